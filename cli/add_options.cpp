@@ -1,0 +1,58 @@
+#include "cli/add_options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/output_paths.h"
+#include "cli/usage_error.h"
+
+namespace chiaro::cli {
+namespace {
+
+std::string last_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
+
+void refuse_empty(const std::string& text) {
+  if (text.empty()) throw UsageError("is empty");
+}
+
+}  // namespace
+
+CLI::Option* add_parsed(CLI::App& command, const OptionText& text, std::function<void(const std::string&)> parse) {
+  const auto named = [parse = std::move(parse), name = last_name(text.names)](const std::string& value) {
+    try {
+      parse(value);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}", name, error.what()));
+    }
+  };
+  return command.add_option_function<std::string>(text.names, named, text.help)->type_name(text.value);
+}
+
+CLI::Option* add_text(CLI::App& command, const OptionText& text, std::string& value) {
+  return add_parsed(command, text, [&value](const std::string& t) {
+    refuse_empty(t);
+    value = t;
+  });
+}
+
+CLI::Option* add_flag(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
+  return command.add_flag(name, value, help);
+}
+
+CLI::Option* add_input(CLI::App& command, const OptionText& text, std::string& value) {
+  return add_text(command, text, value)->required();
+}
+
+CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& value,
+                        const std::vector<std::string>& extensions) {
+  return add_parsed(command, text,
+                    [&value, extensions](const std::string& t) {
+                      require_extension(t, extensions);
+                      value = t;
+                    })
+      ->required();
+}
+
+void set_examples(CLI::App& command, const std::string& examples) { command.footer("Example:\n" + examples); }
+
+}  // namespace chiaro::cli

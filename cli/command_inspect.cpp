@@ -1,0 +1,57 @@
+#include <memory>
+
+#include "cli/add_options.h"
+#include "cli/commands.h"
+#include "cli/common_options.h"
+#include "cli/inspect.h"
+#include "cli/output_paths.h"
+#include "cli/program.h"
+#include "cli/session.h"
+#include "renderer/core/atomic_file.h"
+
+namespace chiaro::cli {
+namespace {
+
+struct InspectCommand {
+  CommonOptions common;
+  std::string file;
+};
+
+bool mentions(const std::string& bytes, const char* text) { return bytes.find(text) != std::string::npos; }
+
+// Receivers of ours have neither values nor materials; a glTF scene of any other program is a scene.
+bool is_vertex_mesh(const std::string& bytes) {
+  if (mentions(bytes, "\"_ILLUMINATION\"")) return true;
+  return mentions(bytes, "\"generator\":\"chiaro\"") && !mentions(bytes, "\"materials\"");
+}
+
+Inspection inspect(const std::string& file) {
+  if (has_extension(file, {".glb", ".gltf"})) {
+    return is_vertex_mesh(renderer::read_file(file)) ? inspect_vertex_mesh(file) : inspect_scene(file);
+  }
+  if (has_extension(file, {".json"})) {
+    return mentions(renderer::read_file(file), "\"strokes\"") ? inspect_strokes(file) : inspect_light_file(file);
+  }
+  return inspect_picture(file);
+}
+
+int run_inspect(const InspectCommand& options) {
+  Session session(options.common);
+  Inspection inspection = inspect(options.file);
+  session.warn(inspection.warnings);
+  inspection.summary.emplace_back("warnings", json_list(inspection.warnings));
+  session.finish_always(inspection.summary, aligned_rows(inspection.rows));
+  return kDone;
+}
+
+}  // namespace
+
+CommandRun add_inspect(CLI::App& command) {
+  const auto options = std::make_shared<InspectCommand>();
+  add_input(command, {"file", "FILE", "Scene, light file, strokes, receivers, target, cache or image"}, options->file);
+  add_common_options(command, options->common);
+  set_examples(command, "  chiaro inspect room.glb\n  chiaro inspect room.exr --json");
+  return [options] { return run_inspect(*options); };
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "cli/add_options.h"
+#include "cli/commands.h"
+#include "cli/illumination_base.h"
+#include "cli/output_paths.h"
+#include "cli/program.h"
+#include "cli/scene_loading.h"
+#include "cli/text_output.h"
+#include "cli/transport_options.h"
+#include "inverse/target/paint.h"
+
+namespace chiaro::cli {
+namespace {
+
+struct PaintCommand {
+  CommonOptions common;
+  TransportOptions transport;
+  SurfaceOptions surface;
+  std::string scene, strokes, from, output;
+  std::optional<float> unpainted_weight;
+};
+
+constexpr float kUnpaintedWeightOnCurrent = 1;
+constexpr float kUnpaintedWeightOnBlack = 0.05F;
+
+// What the strokes are applied to.
+inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
+  const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
+  if (!options.from.empty()) {
+    inverse::Target base = inverse::load_target(options.from);
+    require_same_scene(*stage.tracer, base.receivers, options.from);
+    return base;
+  }
+  if (strokes.base == inverse::StrokeBase::kBlack)
+    return black_target(choose_receivers(*stage.tracer, options.surface));
+  require_light(stage, stage.lights);
+  return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), stage.lights,
+                      trace_options(options.transport, options.common), session.control())
+      .target;
+}
+
+// Receivers that no stroke touches keep the weights of the base. They are told by a weight that no stroke gives.
+inverse::PaintResult paint_keeping_weights(const inverse::Target& base, const inverse::Strokes& strokes) {
+  float untouched = 1;
+  for (const inverse::Stroke& stroke : strokes.strokes) untouched = std::max(untouched, 2 * stroke.weight);
+  inverse::PaintResult result = inverse::paint(base, strokes, {.unpainted_weight = untouched});
+  for (std::size_t i = 0; i < base.weight.size(); ++i) {
+    if (result.target.weight[i] == untouched) result.target.weight[i] = base.weight[i];
+  }
+  return result;
+}
+
+inverse::PaintResult apply_strokes(const PaintCommand& options, const inverse::Target& base,
+                                   const inverse::Strokes& strokes) {
+  if (!options.from.empty() && !options.unpainted_weight) return paint_keeping_weights(base, strokes);
+  const bool on_black = strokes.base == inverse::StrokeBase::kBlack;
+  const float weight = on_black ? kUnpaintedWeightOnBlack : kUnpaintedWeightOnCurrent;
+  return inverse::paint(base, strokes, {.unpainted_weight = options.unpainted_weight.value_or(weight)});
+}
+
+void warn_of_misses(const PaintCommand& options, const inverse::PaintResult& result, Session& session) {
+  for (std::size_t i = 0; i < result.touched.size(); ++i) {
+    if (result.touched[i] > 0) continue;
+    session.warn(fmt::format("{}: strokes[{}]: touches no receiver", options.strokes, i));
+  }
+  if (is_black(result.target)) session.warn(options.output + ": the illumination is black everywhere");
+}
+
+void print_summary(Session& session, const PaintCommand& options, const inverse::PaintResult& result) {
+  JsonList touched;
+  std::vector<TextRow> rows;
+  for (std::size_t i = 0; i < result.touched.size(); ++i) {
+    touched.emplace_back(result.touched[i]);
+    rows.emplace_back(fmt::format("stroke {}", i), fmt::format("{} receivers", result.touched[i]));
+  }
+  rows.emplace_back("receivers", fmt::format("{}", result.target.receivers.size()));
+  rows.emplace_back("mean illumination", text_of_vector(mean_illumination(result.target)) + " cd/m²");
+  rows.emplace_back("written", options.output);
+  session.finish(JsonObject{{"output", options.output},
+                            {"receivers", result.target.receivers.size()},
+                            {"touched", touched},
+                            {"mean_illumination", mean_illumination(result.target)},
+                            {"seconds", session.seconds()}},
+                 aligned_rows(rows));
+}
+
+int run_paint(const PaintCommand& options) {
+  Session session(options.common);
+  require_writable(options.output);
+  const inverse::Strokes strokes = inverse::load_strokes(options.strokes);
+  const inverse::Target base = make_base(options, strokes, session);
+  const inverse::PaintResult result = apply_strokes(options, base, strokes);
+  session.stop_if_interrupted();
+  warn_of_misses(options, result, session);
+  inverse::save_target(result.target, options.output);
+  print_summary(session, options, result);
+  return kDone;
+}
+
+}  // namespace
+
+CommandRun add_paint(CLI::App& command) {
+  const auto options = std::make_shared<PaintCommand>();
+  add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
+  add_input(command, {"--strokes", "S.json", "The brush strokes"}, options->strokes);
+  add_text(command, {"--from", "T.glb", "Start from this target instead of the base the strokes name"}, options->from);
+  add_output(command, {"-o,--output", "T2.glb", "The painted target"}, options->output, {".glb", ".gltf"});
+  add_number(
+      command,
+      {"--unpainted-weight", "W",
+       "Weight of receivers that no stroke touches (default: 1 on current, 0.05 on black, as it was with --from)"},
+      options->unpainted_weight, kNotNegative);
+  add_surface_options(command, options->surface);
+  add_transport_options(command, options->transport, "Paths per receiver where the base is current");
+  add_common_options(command, options->common);
+  set_examples(command,
+               "  chiaro paint room.glb --strokes strokes.json -o painted.glb\n"
+               "  chiaro paint room.glb --strokes more.json --from painted.glb -o painted2.glb");
+  return [options] { return run_paint(*options); };
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,93 @@
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/add_options.h"
+#include "cli/commands.h"
+#include "cli/frame_output.h"
+#include "cli/output_paths.h"
+#include "cli/program.h"
+#include "cli/scene_loading.h"
+#include "cli/text_output.h"
+#include "cli/transport_options.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr int kDefaultSamples = 64;
+
+struct RenderCommand {
+  CommonOptions common;
+  TransportOptions transport{.materials = {}, .samples = kDefaultSamples, .bounces = {}};
+  FrameOptions frame;
+  std::string scene, lights, camera, output;
+  bool preview = false;
+};
+
+void require_outputs(const RenderCommand& options) {
+  require_writable(options.output);
+  if (options.preview) require_writable(beside(options.output, ".png"));
+  require_color_choices(options.frame, options.preview);
+}
+
+void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, Session& session) {
+  if (lights.empty() && !has_emission(*stage.scene)) session.warn(stage.scene->path + ": no light: the frame is black");
+}
+
+void save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
+  const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common, frame.samples);
+  save_frame(frame, camera, options.output, origin, options.frame);
+  if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame.view);
+}
+
+void print_summary(Session& session, const RenderCommand& options, const renderer::Camera& camera,
+                   const renderer::Frame& frame) {
+  JsonObject summary{{"output", options.output}};
+  if (options.preview) summary.emplace_back("preview", beside(options.output, ".png").string());
+  for (auto& figure : frame_summary(frame, camera.name)) summary.push_back(std::move(figure));
+  session.finish(summary, aligned_rows({{"camera", camera.name},
+                                        {"size", fmt::format("{} x {} pixels", frame.image.width, frame.image.height)},
+                                        {"samples", fmt::format("{} per pixel", frame.samples)},
+                                        {"relative standard error", text_of_percent(frame.relative_standard_error)},
+                                        {"time", text_of_seconds(frame.seconds)},
+                                        {"written", options.output}}));
+}
+
+int run_render(const RenderCommand& options) {
+  Session session(options.common);
+  require_outputs(options);
+  const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
+  const renderer::Lights lights = choose_lights(stage, options.lights);
+  warn_of_darkness(stage, lights, session);
+  const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
+  const renderer::Frame frame = renderer::render(*stage.tracer, camera, lights,
+                                                 render_options(options.frame, frame_size(camera, options.frame.size),
+                                                                trace_options(options.transport, options.common)),
+                                                 session.control());
+  save_outputs(options, camera, frame);
+  print_summary(session, options, camera, frame);
+  return kDone;
+}
+
+}  // namespace
+
+CommandRun add_render(CLI::App& command) {
+  const auto options = std::make_shared<RenderCommand>();
+  add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
+  add_output(command, {"-o,--output", "F.exr", "The frame"}, options->output, {".exr"});
+  add_text(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
+  add_text(command, {"--camera", "NAME", "Camera (default: the first)"}, options->camera);
+  add_number(command, {"--time", "SECONDS", "Render for so long; --samples is then the most"},
+             options->frame.time_limit, kPositive);
+  add_flag(command, "--preview", options->preview, "Write F.png beside the frame, through OpenColorIO");
+  add_frame_options(command, options->frame);
+  add_transport_options(command, options->transport, "Paths per pixel");
+  add_common_options(command, options->common);
+  set_examples(command,
+               "  chiaro render lights.glb -o room.exr --width 1920 --samples 256 --preview\n"
+               "  chiaro render room.glb --lights lamps.json --camera Door -o door.exr --layers albedo,lights");
+  return [options] { return run_render(*options); };
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,156 @@
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "cli/add_options.h"
+#include "cli/bake_summary.h"
+#include "cli/commands.h"
+#include "cli/comparison_summary.h"
+#include "cli/frame_output.h"
+#include "cli/output_paths.h"
+#include "cli/program.h"
+#include "cli/solve_options.h"
+#include "cli/text_output.h"
+#include "inverse/transport/bake.h"
+#include "renderer/core/atomic_file.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr int kDefaultFrameSamples = 64;
+
+struct RunCommand {
+  CommonOptions common;
+  SolveChoices choices;
+  FrameOptions frame;
+  int frame_samples = kDefaultFrameSamples;
+  std::string scene, output;
+
+  std::filesystem::path folder() const { return output; }
+};
+
+// The cache lives in its file alone from here on.
+JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const inverse::Target& target,
+                      const inverse::SolveProblem& problem, Session& session) {
+  const inverse::LightGrid grid = inverse::make_light_grid(*stage.tracer, problem.grid);
+  require_memory_for_bake(options.scene, target.receivers, grid);
+  const inverse::BakeResult result =
+      inverse::bake(*stage.tracer, target.receivers, grid, problem.bake, session.control());
+  inverse::save_transport_cache(result.cache, options.folder() / "cache.exr");
+  return bake_summary(result);
+}
+
+renderer::Lights lights_of(const inverse::SolveResult& result, const inverse::SolveProblem& problem) {
+  renderer::Lights lights = problem.kept_lights;
+  for (const inverse::FoundLight& found : result.lights) lights.emplace_back(found.light);
+  return lights;
+}
+
+std::vector<renderer::Camera> cameras_of(const LoadedStage& stage, Session& session) {
+  if (!stage.scene->cameras.empty()) return stage.scene->cameras;
+  return {choose_camera(*stage.scene, "", session)};
+}
+
+// Two cameras may have one name, or names that differ in what a file name cannot hold.
+std::string unused_name(const std::string& name, std::set<std::string>& used) {
+  const std::string base = file_name_of(name);
+  std::string candidate = base;
+  for (int i = 2; !used.insert(candidate).second; ++i) candidate = fmt::format("{}-{}", base, i);
+  return candidate;
+}
+
+JsonObject render_camera(const RunCommand& options, const LoadedStage& stage, const renderer::Camera& camera,
+                         const renderer::Lights& lights, const std::filesystem::path& file, Session& session) {
+  TransportOptions transport = options.choices.transport;
+  transport.samples = options.frame_samples;
+  const auto frame = renderer::render(
+      *stage.tracer, camera, lights,
+      render_options(options.frame, frame_size(camera, options.frame.size), trace_options(transport, options.common)),
+      session.control());
+  const FrameOrigin origin = frame_origin(options.scene, transport, options.common, frame.samples);
+  save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
+  save_preview(frame.image, beside(file, ".png"), options.frame.view);
+  return frame_summary(frame, camera.name);
+}
+
+JsonList render_cameras(const RunCommand& options, const LoadedStage& stage, const renderer::Lights& lights,
+                        Session& session) {
+  JsonList frames;
+  std::set<std::string> used;
+  for (const renderer::Camera& camera : cameras_of(stage, session)) {
+    const std::string name = unused_name(camera.name, used);
+    JsonObject frame =
+        render_camera(options, stage, camera, lights, options.folder() / "frames" / (name + ".exr"), session);
+    frame.emplace(frame.begin(), "file", "frames/" + name + ".exr");
+    frames.emplace_back(std::move(frame));
+  }
+  return frames;
+}
+
+// What the lights found give, beside the target on the same receivers.
+inverse::Target found_target(const inverse::Target& target, const inverse::SolveResult& result) {
+  inverse::Target found = target;
+  found.illumination = result.illumination;
+  found.standard_error.clear();
+  return found;
+}
+
+void print_summary(Session& session, const RunCommand& options, const inverse::SolveResult& result,
+                   const JsonObject& summary, std::size_t frames) {
+  renderer::write_file_atomically(options.folder() / "summary.json", json_text(without_seconds(summary)));
+  session.finish(summary, solve_text(result) + aligned_rows({{"frames", fmt::format("{}", frames)},
+                                                             {"time", text_of_seconds(session.seconds())},
+                                                             {"written", options.output}}));
+}
+
+void make_folders(const RunCommand& options) {
+  make_folder(options.folder());
+  make_folder(options.folder() / "frames");
+}
+
+int run_run(const RunCommand& options) {
+  Session session(options.common);
+  require_not_a_file(options.folder());
+  require_color_choices(options.frame, true);
+  const LoadedStage stage = load_stage(options.scene, options.choices.transport.materials, session);
+  warn_of_scene_lights(stage, options.choices, session);
+  const inverse::Target target = load_solve_target(stage, options.choices);
+  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);
+  make_folders(options);
+  const JsonObject baked = bake_cache(options, stage, target, problem, session);
+  problem.cache_file = options.folder() / "cache.exr";
+  const inverse::SolveResult result =
+      inverse::solve(problem, solve_options(options.choices, options.common), session.control());
+  save_found_lights(options.scene, result, options.folder() / "lights.glb", options.choices.keep_lights);
+  const inverse::Target found = found_target(target, result);
+  inverse::save_target(found, options.folder() / "found.glb");
+  const inverse::TargetComparison comparison = inverse::compare_targets(found, target);
+  const JsonList frames = render_cameras(options, stage, lights_of(result, problem), session);
+  print_summary(session, options, result,
+                {{"bake", baked},
+                 {"solve", solve_summary(result)},
+                 {"comparison", comparison_summary(comparison, target.receivers.positions[comparison.max_at])},
+                 {"frames", frames},
+                 {"seconds", session.seconds()}},
+                frames.size());
+  return kDone;
+}
+
+}  // namespace
+
+CommandRun add_run(CLI::App& command) {
+  const auto options = std::make_shared<RunCommand>();
+  add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
+  add_input(command, {"-o,--output", "DIR", "Folder for all results; made where it is missing"}, options->output);
+  add_solve_options(command, options->choices);
+  add_count(command, {"--frame-samples", "N", fmt::format("Paths per pixel (default {})", options->frame_samples)},
+            options->frame_samples, {1, 1 << 24});
+  add_frame_options(command, options->frame);
+  add_common_options(command, options->common);
+  set_examples(command, "  chiaro run room.glb --target painted.glb -o room_lit --max-lights 5 --width 1280");
+  return [options] { return run_run(*options); };
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,90 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/add_options.h"
+#include "cli/commands.h"
+#include "cli/output_paths.h"
+#include "cli/program.h"
+#include "cli/solve_options.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::cli {
+namespace {
+
+struct SolveCommand {
+  CommonOptions common;
+  SolveChoices choices;
+  std::string scene, cache, report, output;
+};
+
+// The report's folder is made after the inputs are found to be good.
+inverse::SolveOptions with_report(inverse::SolveOptions options, const std::string& folder) {
+  if (folder.empty()) return options;
+  make_folder(folder);
+  options.report_folder = folder;
+  return options;
+}
+
+// A solve looks for lights where its cache has them, so the cache must not reach beyond the region asked for.
+void require_inside(const inverse::LightGrid& grid, const renderer::Box3f& region, const std::string& cache) {
+  const float tolerance = 1e-4F * (1 + region.diagonal());
+  const renderer::Vec3f room{tolerance, tolerance, tolerance};
+  const renderer::Box3f grown{region.min - room, region.max + room}, lights = grid.region();
+  if (grown.contains(lights.min) && grown.contains(lights.max)) return;
+  throw renderer::Error({cache, "grid", "reaches beyond --region", "a cache baked with the same --region"});
+}
+
+// A cache knows how many bounces it holds; the final check traces as many unless told otherwise.
+void use_cache(const SolveCommand& options, inverse::SolveProblem& problem) {
+  if (options.cache.empty()) return;
+  problem.cache_file = options.cache;
+  const inverse::TransportCache header = inverse::load_transport_cache_header(options.cache);
+  if (problem.grid.region) require_inside(header.grid, *problem.grid.region, options.cache);
+  if (!options.choices.transport.bounces) problem.bake.bounces = header.settings.bounces;
+}
+
+void print_summary(Session& session, const SolveCommand& options, const inverse::SolveResult& result) {
+  const std::string written =
+      fmt::format("  written  {}, {}\n", options.output, beside(options.output, ".json").string());
+  session.finish(solve_summary(result), solve_text(result) + written);
+}
+
+int run_solve(const SolveCommand& options) {
+  Session session(options.common);
+  require_writable(options.output);
+  require_writable(beside(options.output, ".json"));
+  const LoadedStage stage = load_stage(options.scene, options.choices.transport.materials, session);
+  warn_of_scene_lights(stage, options.choices, session);
+  const inverse::Target target = load_solve_target(stage, options.choices);
+  session.stop_if_interrupted();
+  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);
+  use_cache(options, problem);
+  const inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
+  const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
+  save_found_lights(options.scene, result, options.output, options.choices.keep_lights);
+  print_summary(session, options, result);
+  return kDone;
+}
+
+}  // namespace
+
+CommandRun add_solve(CLI::App& command) {
+  const auto options = std::make_shared<SolveCommand>();
+  add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
+  add_output(command,
+             {"-o,--output", "LIGHTS.glb", "SCENE with the lights found; LIGHTS.json, the lights alone, beside it"},
+             options->output, {".glb", ".gltf"});
+  add_solve_options(command, options->choices);
+  add_text(command, {"--cache", "C.exr", "A transport cache; without one solve bakes by itself"}, options->cache);
+  add_text(command, {"--report", "DIR", "Write what each stage found into this folder"}, options->report);
+  add_common_options(command, options->common);
+  command.get_option("--grid")->excludes("--cache");
+  set_examples(command,
+               "  chiaro solve room.glb --target painted.glb --cache room.exr -o lights.glb\n"
+               "  chiaro solve room.glb --target painted.glb -o lights.glb --max-lights 5 --report report");
+  return [options] { return run_solve(*options); };
+}
+
+}  // namespace chiaro::cli

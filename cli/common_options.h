@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace chiaro::cli {
+
+// What every command has.
+struct CommonOptions {
+  int threads = 0;  // 0: all cores
+  std::uint64_t seed = 0;
+  bool json = false;   // the summary as JSON, alone, on standard output
+  bool quiet = false;  // no progress, no warnings, no summary other than --json
+};
+
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+std::string program_version();
+
+}  // namespace chiaro::cli

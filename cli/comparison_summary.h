@@ -1,0 +1,19 @@
+#pragma once
+// Figures of comparisons, for people and as JSON.
+
+#include <string>
+
+#include "cli/json_output.h"
+#include "inverse/target/compare_targets.h"
+#include "renderer/image/compare_images.h"
+
+namespace chiaro::cli {
+
+JsonObject comparison_summary(const renderer::ImageComparison& comparison);
+std::string comparison_text(const renderer::ImageComparison& comparison);
+
+// `place`: where the receiver of the largest difference lies, metres.
+JsonObject comparison_summary(const inverse::TargetComparison& comparison, renderer::Vec3f place);
+std::string comparison_text(const inverse::TargetComparison& comparison, renderer::Vec3f place);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,81 @@
+#include "cli/frame_metadata.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "cli/common_options.h"
+
+namespace chiaro::cli {
+namespace {
+
+using renderer::Mat4f;
+
+// glTF 2.0 specification, 3.10.3: finite and infinite perspective projection.
+Mat4f perspective(const renderer::Camera& camera, double aspect) {
+  Mat4f p;
+  const double cotangent = 1 / std::tan(0.5 * camera.vertical_fov);
+  const bool infinite = !std::isfinite(camera.far);
+  const double near = camera.near, far = camera.far;
+  p(0, 0) = float(cotangent / aspect);
+  p(1, 1) = float(cotangent);
+  p(2, 2) = infinite ? -1.0F : float((far + near) / (near - far));
+  p(2, 3) = float(infinite ? -2 * near : 2 * far * near / (near - far));
+  p(3, 2) = -1;
+  p(3, 3) = 0;
+  return p;
+}
+
+// glTF 2.0 specification, 3.10.3.4, with the width that the frame's shape gives.
+Mat4f orthographic(const renderer::Camera& camera, double aspect) {
+  Mat4f p;
+  const double near = camera.near, far = camera.far;
+  p(0, 0) = float(1 / (camera.half_height * aspect));
+  p(1, 1) = 1 / camera.half_height;
+  if (std::isfinite(far) && far != near) {
+    p(2, 2) = float(2 / (near - far));
+    p(2, 3) = float((far + near) / (near - far));
+  }
+  return p;
+}
+
+// A scale above a camera does not change its picture.
+Mat4f without_scale(Mat4f matrix) {
+  for (int column = 0; column < 3; ++column) {
+    const renderer::Vec3f axis = renderer::normalize(matrix.column(column));
+    for (int row = 0; row < 3; ++row) matrix(row, column) = axis[row];
+  }
+  return matrix;
+}
+
+}  // namespace
+
+Mat4f ndc_from_camera(const renderer::Camera& camera, double frame_aspect_ratio) {
+  return camera.orthographic ? orthographic(camera, frame_aspect_ratio) : perspective(camera, frame_aspect_ratio);
+}
+
+std::array<float, 16> row_vector_matrix(const Mat4f& matrix) {
+  // Column-major storage of a matrix is row-major storage of its transpose.
+  return matrix.m;
+}
+
+renderer::Attributes frame_attributes(const renderer::Camera& camera, double frame_aspect_ratio,
+                                      const FrameOrigin& origin) {
+  const Mat4f camera_from_world = renderer::inverse_affine(without_scale(camera.world_from_camera));
+  const Mat4f ndc_from_world = ndc_from_camera(camera, frame_aspect_ratio) * camera_from_world;
+  return {
+      {"whiteLuminance", 1.0F},
+      {"worldToCamera", row_vector_matrix(camera_from_world)},
+      {"worldToNDC", row_vector_matrix(ndc_from_world)},
+      {"chiaro:version", program_version()},
+      {"chiaro:units", std::string("cd/m^2")},
+      {"chiaro:scene", origin.scene},
+      {"chiaro:camera", camera.name},
+      {"chiaro:materials", origin.materials},
+      {"chiaro:samples", origin.samples},
+      {"chiaro:bounces", origin.bounces},
+      {"chiaro:seed", fmt::format("{}", origin.seed)},
+  };
+}
+
+}  // namespace chiaro::cli

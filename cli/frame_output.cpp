@@ -1,0 +1,130 @@
+#include "cli/frame_output.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/add_options.h"
+#include "cli/usage_error.h"
+
+namespace chiaro::cli {
+namespace {
+
+using renderer::Image;
+
+constexpr CountRange kSideRange{1, 1 << 16};
+
+bool parse_filter(const std::string& text) {
+  if (text == "box") return true;
+  if (text == "blackman-harris") return false;
+  throw UsageError(fmt::format("'{}' (expected blackman-harris or box)", text));
+}
+
+// Layers that are not colours: geometry, and the square of a colour.
+bool is_color_layer(const std::string& layer) {
+  return layer != "normal" && layer != "position" && layer != "depth" && layer != "variance";
+}
+
+void convert_to_output_space(Image& image, const FrameOptions& options) {
+  const auto config = renderer::find_ocio_config(options.view.config);
+  renderer::convert_from_rec709(image, config, options.output_space, color_layers(image));
+}
+
+// Without the attribute readers would take the primaries for Rec.709's, so a space that has none says its name instead.
+void add_chromaticities(renderer::Attributes& attributes, const FrameOptions& options) {
+  if (options.output_space.empty()) {
+    attributes.emplace_back("chromaticities", kRec709Chromaticities);
+    return;
+  }
+  attributes.emplace_back("chiaro:color_space", options.output_space);
+  const auto config = renderer::find_ocio_config(options.view.config);
+  if (const auto known = renderer::chromaticities_of(config, options.output_space)) {
+    attributes.emplace_back("chromaticities", *known);
+  }
+}
+
+}  // namespace
+
+void add_frame_options(CLI::App& command, FrameOptions& options) {
+  add_count(command, {"--width", "W", "Pixels across (default 960)"}, options.size.width, kSideRange);
+  add_count(command, {"--height", "H", "Pixels down (default: from the camera's aspect ratio)"}, options.size.height,
+            kSideRange);
+  add_parsed(command,
+             {"--layers", "a,b|all", "Further layers: " + fmt::format("{}", fmt::join(renderer::frame_layers(), ", "))},
+             [&options](const std::string& text) { options.layers = parse_words(text, renderer::frame_layers()); });
+  add_flag(command, "--float", options.full_float, "32-bit floats instead of 16-bit ones");
+  add_parsed(command, {"--filter", "NAME", "blackman-harris or box (default blackman-harris)"},
+             [&options](const std::string& text) { options.box_filter = parse_filter(text); });
+  add_text(command, {"--output-space", "NAME", "Scene-linear colour space of the EXR (default: Rec.709)"},
+           options.output_space);
+  add_view_options(command, options.view);
+}
+
+void require_color_choices(const FrameOptions& options, bool preview) {
+  if (preview) require_view(options.view);
+  if (options.output_space.empty()) return;
+  Image pixel = renderer::make_image(1, 1, {"R", "G", "B"});
+  convert_to_output_space(pixel, options);
+}
+
+renderer::RenderOptions render_options(const FrameOptions& options, std::array<int, 2> size,
+                                       const renderer::TraceOptions& trace) {
+  return {.width = size[0],
+          .height = size[1],
+          .trace = trace,
+          .time_limit = options.time_limit,
+          .box_filter = options.box_filter,
+          .layers = options.layers};
+}
+
+std::vector<std::string> color_layers(const Image& frame) {
+  std::vector<std::string> layers;
+  for (const std::string& name : frame.channel_names) {
+    if (name == "R") layers.emplace_back();
+    if (!name.ends_with(".R")) continue;
+    const std::string layer = name.substr(0, name.size() - 2);
+    if (is_color_layer(layer)) layers.push_back(layer);
+  }
+  return layers;
+}
+
+FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common,
+                         int samples) {
+  return {.scene = std::filesystem::path(scene).filename().string(),
+          .materials = text_of_materials(transport.materials),
+          .seed = common.seed,
+          .samples = samples,
+          .bounces = transport.bounces.value_or(-1)};
+}
+
+void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
+                const FrameOrigin& origin, const FrameOptions& options) {
+  const double aspect_ratio = double(frame.image.width) / frame.image.height;
+  renderer::Attributes attributes = frame_attributes(camera, aspect_ratio, origin);
+  add_chromaticities(attributes, options);
+  const auto type = options.full_float ? renderer::PixelType::kFloat : renderer::PixelType::kHalf;
+  if (options.output_space.empty()) {
+    renderer::save_image(frame.image, path, type, attributes);
+    return;
+  }
+  Image converted = frame.image;
+  convert_to_output_space(converted, options);
+  renderer::save_image(converted, path, type, attributes);
+}
+
+void save_preview(const Image& frame, const std::filesystem::path& path, const ViewChoice& view) {
+  renderer::save_image(displayed(frame, view), path, renderer::PixelType::kUint8);
+}
+
+JsonObject frame_summary(const renderer::Frame& frame, const std::string& camera) {
+  return {{"camera", camera},
+          {"width", frame.image.width},
+          {"height", frame.image.height},
+          {"channels", json_list(frame.image.channel_names)},
+          {"samples", frame.samples},
+          {"relative_standard_error", frame.relative_standard_error},
+          {"seconds", frame.seconds}};
+}
+
+}  // namespace chiaro::cli

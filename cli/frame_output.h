@@ -1,0 +1,51 @@
+#pragma once
+// What `render` and `run` share: the options of a frame, and its files.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/camera_choice.h"
+#include "cli/frame_metadata.h"
+#include "cli/json_output.h"
+#include "cli/transport_options.h"
+#include "cli/view_options.h"
+#include "renderer/image/image_file.h"
+#include "renderer/trace/render.h"
+
+namespace chiaro::cli {
+
+struct FrameOptions {
+  FrameSize size;
+  double time_limit = 0;  // seconds; 0: none
+  std::vector<std::string> layers;
+  bool full_float = false;
+  bool box_filter = false;
+  std::string output_space;  // of the OpenColorIO config; empty: scene-linear Rec.709
+  ViewChoice view;
+};
+
+void add_frame_options(CLI::App& command, FrameOptions& options);
+
+// Error where the colour spaces, displays or views asked for do not exist.
+void require_color_choices(const FrameOptions& options, bool preview);
+
+renderer::RenderOptions render_options(const FrameOptions& options, std::array<int, 2> size,
+                                       const renderer::TraceOptions& trace);
+
+FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common,
+                         int samples);
+
+// Writes the frame as EXR with all of its attributes.
+void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
+                const FrameOrigin& origin, const FrameOptions& options);
+
+// Writes the frame's colours as the view shows them (8 bits).
+void save_preview(const renderer::Image& frame, const std::filesystem::path& path, const ViewChoice& view);
+
+// The layers of a frame that are colours ("" = the beauty), as convert_from_rec709 wants them.
+std::vector<std::string> color_layers(const renderer::Image& frame);
+
+JsonObject frame_summary(const renderer::Frame& frame, const std::string& camera);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cli/inspect.h"
+#include "inverse/target/paint.h"
+#include "renderer/io/light_file.h"
+
+namespace chiaro::cli {
+namespace {
+
+const char* name_of_mode(inverse::BrushMode mode) {
+  switch (mode) {
+    case inverse::BrushMode::kAdd:
+      return "add";
+    case inverse::BrushMode::kSet:
+      return "set";
+    case inverse::BrushMode::kMultiply:
+      return "multiply";
+    case inverse::BrushMode::kErase:
+      break;
+  }
+  return "erase";
+}
+
+}  // namespace
+
+Inspection start_inspection(const std::string& kind, const std::string& file) {
+  Inspection inspection;
+  inspection.add("kind", kind, "kind", kind);
+  inspection.add("file", file, "file", file);
+  return inspection;
+}
+
+Inspection inspect_light_file(const std::string& file) {
+  Inspection inspection = start_inspection("light file", file);
+  add_lights(inspection, renderer::load_lights(file));
+  return inspection;
+}
+
+Inspection inspect_strokes(const std::string& file) {
+  const inverse::Strokes strokes = inverse::load_strokes(file);
+  Inspection inspection = start_inspection("strokes", file);
+  const std::string base = strokes.base == inverse::StrokeBase::kBlack ? "black" : "current";
+  inspection.add("base", base, "base", base);
+  JsonList list;
+  for (const inverse::Stroke& stroke : strokes.strokes) {
+    const std::string mode = name_of_mode(stroke.mode);
+    list.emplace_back(
+        JsonObject{{"mode", mode}, {"color", stroke.color}, {"radius", stroke.radius}, {"points", stroke.path.size()}});
+    inspection.rows.emplace_back(
+        "stroke", fmt::format("{}, {} cd/m², radius {:.4g} m, {} points", mode, text_of_vector(stroke.color),
+                              stroke.radius, stroke.path.size()));
+  }
+  inspection.summary.emplace_back("strokes", list);
+  return inspection;
+}
+
+}  // namespace chiaro::cli

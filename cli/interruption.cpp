@@ -1,0 +1,33 @@
+#include "cli/interruption.h"
+
+#include <csignal>
+
+#include <unistd.h>
+
+#include "cli/program.h"
+
+namespace chiaro::cli {
+namespace {
+
+// A signal handler can reach nothing but static storage.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void handle_signal(int) {
+  if (interrupted.exchange(true)) _exit(kInterrupted);
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  struct sigaction action = {};
+  action.sa_handler = handle_signal;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+const std::atomic<bool>& interruption_flag() { return interrupted; }
+
+}  // namespace chiaro::cli

@@ -1,0 +1,35 @@
+#include "cli/material_options.h"
+
+#include <fmt/format.h>
+
+#include "cli/add_options.h"
+#include "cli/usage_error.h"
+
+namespace chiaro::cli {
+namespace {
+
+bool parse_model(const std::string& text) {
+  if (text == "diffuse") return true;
+  if (text == "gltf") return false;
+  throw UsageError(fmt::format("'{}' (expected gltf or diffuse)", text));
+}
+
+}  // namespace
+
+void add_material_options(CLI::App& command, MaterialOptions& options) {
+  add_parsed(command, {"--materials", "MODEL", "gltf, or diffuse: Lambert of the base colour (default gltf)"},
+             [&options](const std::string& text) { options.diffuse = parse_model(text); });
+  add_parsed(command, {"--albedo", "R[,G,B]", "Every surface a Lambert of this albedo, 0 to 1"},
+             [&options](const std::string& text) { options.albedo = parse_albedo(text); });
+}
+
+renderer::MaterialOverride material_override(const MaterialOptions& options) {
+  return {options.diffuse ? renderer::MaterialModel::kDiffuse : renderer::MaterialModel::kGltf, options.albedo};
+}
+
+std::string text_of_materials(const MaterialOptions& options) {
+  if (options.albedo) return fmt::format("albedo {},{},{}", options.albedo->x, options.albedo->y, options.albedo->z);
+  return options.diffuse ? "diffuse" : "gltf";
+}
+
+}  // namespace chiaro::cli

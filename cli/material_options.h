@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "renderer/scene/material_override.h"
+
+namespace CLI {
+class App;
+}
+
+namespace chiaro::cli {
+
+// --materials and --albedo.
+struct MaterialOptions {
+  bool diffuse = false;
+  std::optional<renderer::Vec3f> albedo;
+};
+
+void add_material_options(CLI::App& command, MaterialOptions& options);
+
+renderer::MaterialOverride material_override(const MaterialOptions& options);
+
+// "gltf", "diffuse" or "albedo R,G,B": how caches and frames name it.
+std::string text_of_materials(const MaterialOptions& options);
+
+}  // namespace chiaro::cli

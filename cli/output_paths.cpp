@@ -1,0 +1,89 @@
+#include "cli/output_paths.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/usage_error.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::cli {
+namespace {
+
+using renderer::Error;
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+// Permissions alone do not tell: a folder may be on a read-only or a virtual file system.
+void try_to_make_file(const std::filesystem::path& folder, const std::filesystem::path& wanted) {
+  const std::filesystem::path probe = folder / fmt::format(".{}.{}.probe", wanted.stem().string(), ::getpid());
+  const int file = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  if (file < 0) throw Error({wanted.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
+  ::close(file);
+  ::unlink(probe.c_str());
+}
+
+}  // namespace
+
+bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
+  const std::string extension = lower_case(path.extension().string());
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+void require_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
+  if (has_extension(path, extensions)) return;
+  throw UsageError(fmt::format("'{}' (expected a name ending in {})", path.string(), fmt::join(extensions, " or ")));
+}
+
+void require_writable(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
+  }
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw Error({path.string(), "", "is a folder", "the name of a file"});
+  }
+  try_to_make_file(folder, path);
+}
+
+void require_not_a_file(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder, ignored) || std::filesystem::is_directory(folder, ignored)) return;
+  throw Error({folder.string(), "", "is a file", "the name of a folder"});
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  require_not_a_file(folder);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error({folder.string(), "", fmt::format("cannot be made: {}", failed.message()), "a folder"});
+  require_writable(folder / "contents");
+}
+
+std::filesystem::path beside(const std::filesystem::path& path, const std::string& extension) {
+  return std::filesystem::path(path).replace_extension(extension);
+}
+
+std::string file_name_of(const std::string& name) {
+  std::string result = name.empty() ? "unnamed" : name;
+  for (char& c : result) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' || (c & 0x80);
+    if (!plain) c = '_';
+  }
+  if (result.front() == '.') result.front() = '_';
+  return result.substr(0, 100);
+}
+
+}  // namespace chiaro::cli

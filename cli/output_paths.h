@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace chiaro::cli {
+
+// UsageError where `path` ends in none of `extensions` (".exr"; case does not matter).
+void require_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions);
+
+bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions);
+
+// Error where a file could not be made at `path`: asked before the long work starts, not after.
+void require_writable(const std::filesystem::path& path);
+
+// Error where `folder` exists and is something else than a folder.
+void require_not_a_file(const std::filesystem::path& folder);
+
+// Makes the folder where it is missing; Error where it cannot be made, is a file, or takes no files.
+void make_folder(const std::filesystem::path& folder);
+
+// `path` with another extension, beside it.
+std::filesystem::path beside(const std::filesystem::path& path, const std::string& extension);
+
+// A file name for something a user has named: characters that file systems or shells mind become '_'.
+std::string file_name_of(const std::string& name);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,104 @@
+#include "cli/program.h"
+
+#include <cstdio>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/common_options.h"
+#include "cli/interruption.h"
+#include "cli/text_output.h"
+#include "cli/usage_error.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::cli {
+namespace {
+
+struct CommandEntry {
+  const char* name;
+  const char* description;
+  CommandRun (*add)(CLI::App&);
+};
+
+constexpr CommandEntry kCommands[] = {
+    {"inspect", "Say what is in a scene, light file, target, cache or frame", add_inspect},
+    {"receivers", "Write the surfaces on which illumination lives, to paint on", add_receivers},
+    {"illuminate", "Trace the illumination of every receiver under given lights", add_illuminate},
+    {"paint", "Apply brush strokes to an illumination", add_paint},
+    {"bake", "Compute the transport of a grid of unity lights to every receiver", add_bake},
+    {"solve", "Find the lights that produce a painted illumination", add_solve},
+    {"render", "Render the final frame", add_render},
+    {"compare", "Compare two frames or two targets", add_compare},
+    {"run", "Bake, solve, render every camera and compare with the target", add_run},
+};
+
+using AddedCommands = std::vector<std::pair<CLI::App*, CommandRun>>;
+
+AddedCommands add_commands(CLI::App& program) {
+  AddedCommands added;
+  for (const CommandEntry& entry : kCommands) {
+    CLI::App* command = program.add_subcommand(entry.name, entry.description);
+    added.emplace_back(command, entry.add(*command));
+  }
+  return added;
+}
+
+int run_parsed_command(const AddedCommands& commands) {
+  for (const auto& [command, run] : commands) {
+    if (command->parsed()) return run();
+  }
+  return kWrongUsage;
+}
+
+int fail_usage(const CLI::App& program, const std::string& message) {
+  const auto selected = program.get_subcommands();
+  const std::string command = selected.empty() ? "" : " " + selected.front()->get_name();
+  std::fprintf(stderr, "chiaro: usage: %s\nchiaro: see 'chiaro%s --help'\n", one_line(message).c_str(),
+               command.c_str());
+  return kWrongUsage;
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "chiaro: error: %s\n", one_line(message).c_str());
+  return kFailed;
+}
+
+int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, const char* const* argv) {
+  try {
+    program.parse(argc, argv);
+    return run_parsed_command(commands);
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    return fail_usage(program, error.what());
+  } catch (const UsageError& error) {
+    return fail_usage(program, error.what());
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  try {
+    install_signal_handlers();
+    CLI::App program("chiaro finds the lights that make a 3D scene look the way somebody painted it.", "chiaro");
+    program.require_subcommand(1);
+    program.set_version_flag("--version", "chiaro " + program_version());
+    program.footer("Example:\n  chiaro run room.glb --target painted.glb -o room_lit");
+    const AddedCommands commands = add_commands(program);
+    return parse_and_run(program, commands, argc, argv);
+  } catch (const renderer::Interruption&) {
+    std::fputs("chiaro: interrupted\n", stderr);
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory");
+  } catch (const std::exception& error) {
+    return fail(error.what());
+  }
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+namespace chiaro::cli {
+
+// One line of a progress bar, `columns` wide at most: the stage, a bar, percent, and the time left when it can be told
+// from the seconds the stage has taken.
+std::string progress_line(std::string_view stage, double fraction, double seconds, int columns);
+
+// A progress bar on standard error, redrawn in place.
+class ProgressBar {
+ public:
+  // Shows nothing unless `wanted` and standard error is a terminal.
+  explicit ProgressBar(bool wanted);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  bool shown() const { return shown_; }
+  void update(std::string_view stage, double fraction);
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool shown_;
+  bool drawn_ = false;
+  std::string stage_;
+  Clock::time_point stage_start_, last_drawn_;
+};
+
+}  // namespace chiaro::cli

@@ -1,0 +1,44 @@
+#include "cli/scene_loading.h"
+
+#include <algorithm>
+
+#include "renderer/core/error.h"
+#include "renderer/io/light_file.h"
+#include "renderer/io/load_gltf.h"
+
+namespace chiaro::cli {
+
+LoadedStage load_stage(const std::string& path, const MaterialOptions& materials, Session& session) {
+  renderer::LoadedScene loaded = renderer::load_gltf(path);
+  session.warn(loaded.warnings);
+  session.stop_if_interrupted();
+  if (renderer::drawn_triangle_count(loaded.scene) == 0) {
+    throw renderer::Error({path, "", "has no triangles", "a scene with surfaces"});
+  }
+  LoadedStage stage;
+  stage.scene = std::make_unique<const renderer::Scene>(
+      renderer::with_materials(std::move(loaded.scene), material_override(materials)));
+  stage.lights = std::move(loaded.lights);
+  stage.tracer = std::make_unique<const renderer::RayTracer>(*stage.scene);
+  session.stop_if_interrupted();
+  return stage;
+}
+
+renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file) {
+  return light_file.empty() ? stage.lights : renderer::load_lights(light_file);
+}
+
+bool has_emission(const renderer::Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const renderer::Instance& instance) {
+    const renderer::Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    return renderer::max_component(scene.materials[std::size_t(mesh.material)].emission) > 0;
+  });
+}
+
+void require_light(const LoadedStage& stage, const renderer::Lights& lights) {
+  if (!lights.empty() || has_emission(*stage.scene)) return;
+  throw renderer::Error({stage.scene->path, "", "no light: the scene has no lights and nothing in it emits",
+                         "lights in the scene, or a light file given with --lights"});
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,54 @@
+#include "cli/session.h"
+
+#include <cstdio>
+
+#include "cli/interruption.h"
+#include "cli/text_output.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::cli {
+
+Session::Session(const CommonOptions& options)
+    : options_(options),
+      thread_limit_(options.threads),
+      progress_(!options.quiet),
+      start_(std::chrono::steady_clock::now()) {
+  control_.interrupted = &interruption_flag();
+  if (progress_.shown()) {
+    control_.report = [this](std::string_view stage, double fraction) { progress_.update(stage, fraction); };
+  }
+}
+
+void Session::warn(const std::vector<std::string>& texts) {
+  warnings_.insert(warnings_.end(), texts.begin(), texts.end());
+}
+
+void Session::stop_if_interrupted() const {
+  if (control_.stop_requested()) throw renderer::Interruption();
+}
+
+double Session::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Session::print_warnings() {
+  progress_.clear();
+  if (options_.quiet) return;
+  for (const std::string& warning : warnings_) std::fprintf(stderr, "chiaro: warning: %s\n", one_line(warning).c_str());
+}
+
+void Session::finish(const Json& summary, const std::string& text) {
+  print_warnings();
+  if (options_.json) {
+    print(json_text(summary));
+  } else if (!options_.quiet) {
+    print(text);
+  }
+}
+
+void Session::finish_always(const Json& summary, const std::string& text) {
+  print_warnings();
+  print(options_.json ? json_text(summary) : text);
+}
+
+}  // namespace chiaro::cli

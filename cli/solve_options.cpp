@@ -1,0 +1,106 @@
+#include "cli/solve_options.h"
+
+#include <fmt/format.h>
+
+#include "cli/add_options.h"
+#include "cli/output_paths.h"
+#include "cli/usage_error.h"
+#include "renderer/io/light_file.h"
+#include "renderer/io/save_gltf.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr CountRange kLightCount{1, 1000};
+
+inverse::SolveMethod parse_method(const std::string& text) {
+  if (text == "thesis") return inverse::SolveMethod::kThesis;
+  if (text == "joint") return inverse::SolveMethod::kJoint;
+  throw UsageError(fmt::format("'{}' (expected thesis or joint)", text));
+}
+
+void parse_importance_weights(const std::string& text, inverse::SolveOptions& solve) {
+  const std::vector<double> weights = parse_numbers(text, 2, kNotNegative);
+  if (weights[0] + weights[1] <= 0) throw UsageError(fmt::format("'{}' (expected one above 0)", text));
+  solve.geometry_weight = weights[0];
+  solve.illumination_weight = weights[1];
+}
+
+void add_light_count_options(CLI::App& command, inverse::SolveOptions& solve) {
+  add_count(command, {"--max-lights", "N", fmt::format("At most N lights (default {})", solve.max_lights)},
+            solve.max_lights, kLightCount);
+  add_count(command, {"--lights", "N", "Exactly N lights"}, solve.exact_lights, kLightCount);
+}
+
+void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
+  add_parsed(command, {"--method", "NAME", "joint, or thesis: the published pipeline, step for step (default joint)"},
+             [&solve](const std::string& text) { solve.method = parse_method(text); });
+  add_number(command, {"--error-threshold", "E", "Of the lightcut, relative L2 (default: from the method)"},
+             solve.error_threshold, kPositive);
+  add_count(command,
+            {"--important-vertices", "M", fmt::format("Receivers to solve on (default {})", solve.important_vertices)},
+            solve.important_vertices, {1, 10'000'000});
+  add_parsed(command, {"--importance-weights", "w1,w2", "Of geometry and illumination (default 1,1)"},
+             [&solve](const std::string& text) { parse_importance_weights(text, solve); });
+  add_number(
+      command,
+      {"--weak-light", "W", fmt::format("Fraction below which a light is deleted (default {})", solve.weak_light)},
+      solve.weak_light, kZeroToOne);
+  add_number(command, {"--time-limit", "SECONDS", "Stop searching then, with what is found"}, solve.time_limit,
+             kPositive);
+  add_count(command,
+            {"--verification-samples", "N",
+             "Paths per receiver of the final check (default: 16 to 512, by the number of receivers)"},
+            solve.verification_samples, {1, 1 << 24});
+}
+
+}  // namespace
+
+void add_solve_options(CLI::App& command, SolveChoices& choices) {
+  add_input(command, {"--target", "T.glb", "The painted illumination"}, choices.target);
+  add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, choices.target_scale,
+             kPositive);
+  add_light_count_options(command, choices.solve);
+  add_method_options(command, choices.solve);
+  add_flag(command, "--keep-lights", choices.keep_lights, "Lights of SCENE stay lit and untouched");
+  add_grid_options(command, choices.grid);
+  add_transport_options(command, choices.transport, "Gather rays per receiver of a bake");
+}
+
+inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& choices) {
+  inverse::Target target = inverse::load_target(choices.target, choices.target_scale);
+  require_same_scene(*stage.tracer, target.receivers, choices.target);
+  return target;
+}
+
+inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,
+                                    const SolveChoices& choices, const CommonOptions& common) {
+  return {.tracer = *stage.tracer,
+          .target = target,
+          .cache_file = {},
+          .grid = light_grid_options(*stage.scene, choices.grid),
+          .bake = bake_settings(choices.transport, common),
+          .kept_lights = choices.keep_lights ? stage.lights : renderer::Lights{}};
+}
+
+inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOptions& common) {
+  inverse::SolveOptions options = choices.solve;
+  options.seed = common.seed;
+  return options;
+}
+
+void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
+  if (stage.lights.empty() || choices.keep_lights) return;
+  session.warn(fmt::format("{}: its {} lights are taken out (--keep-lights leaves them lit)", stage.scene->path,
+                           stage.lights.size()));
+}
+
+void save_found_lights(const std::string& scene, const inverse::SolveResult& result, const std::string& output,
+                       bool keep_lights) {
+  renderer::Lights lights;
+  for (const inverse::FoundLight& found : result.lights) lights.emplace_back(found.light);
+  renderer::save_gltf_with_lights(scene, lights, output, {.keep_lights = keep_lights});
+  renderer::save_lights(lights, beside(output, ".json"));
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include "cli/solve_options.h"
+#include "cli/text_output.h"
+
+namespace chiaro::cli {
+namespace {
+
+JsonObject light_summary(const inverse::FoundLight& found) {
+  JsonObject summary{{"type", "point"}};
+  if (!found.light.name.empty()) summary.emplace_back("name", found.light.name);
+  summary.emplace_back("position", found.light.position);
+  summary.emplace_back("intensity", found.light.intensity);
+  summary.emplace_back("contribution", found.contribution);
+  return summary;
+}
+
+JsonObject stage_summary(const inverse::StageReport& stage) {
+  JsonObject summary{{"name", stage.name}, {"seconds", stage.seconds}};
+  for (const auto& [name, figure] : stage.figures) summary.emplace_back(name, figure);
+  return summary;
+}
+
+std::string light_table(const std::vector<inverse::FoundLight>& lights) {
+  std::vector<std::vector<std::string>> rows{{"light", "position (m)", "intensity (cd)", "contribution"}};
+  for (const inverse::FoundLight& found : lights) {
+    rows.push_back({fmt::format("{}", rows.size()), text_of_vector(found.light.position),
+                    text_of_vector(found.light.intensity), text_of_percent(found.contribution)});
+  }
+  return table(rows);
+}
+
+}  // namespace
+
+JsonObject solve_summary(const inverse::SolveResult& result) {
+  JsonList lights, stages;
+  for (const inverse::FoundLight& found : result.lights) lights.emplace_back(light_summary(found));
+  for (const inverse::StageReport& stage : result.stages) stages.emplace_back(stage_summary(stage));
+  return {{"light_count", result.lights.size()},
+          {"lights", lights},
+          {"error", JsonObject{{"relative_l2", result.relative_l2},
+                               {"relative_l2_cached", result.relative_l2_cached},
+                               {"initial_relative_l2", result.initial_relative_l2}}},
+          {"seconds", JsonObject{{"total", result.total_seconds},
+                                 {"initial", result.initial_seconds},
+                                 {"optimal", result.optimal_seconds},
+                                 {"cache", result.cache_seconds}}},
+          {"stages", stages},
+          {"important_vertices", result.important_vertices},
+          {"target_noise", result.target_noise},
+          {"termination", result.termination}};
+}
+
+std::string solve_text(const inverse::SolveResult& result) {
+  std::vector<TextRow> rows{{"error, traced afresh", text_of_percent(result.relative_l2)},
+                            {"error by the cache", text_of_percent(result.relative_l2_cached)},
+                            {"before the last optimisation", text_of_percent(result.initial_relative_l2)}};
+  rows.emplace_back("noise of the fresh trace", text_of_percent(result.verification_noise));
+  if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
+  rows.emplace_back("ended", result.termination);
+  for (const inverse::StageReport& stage : result.stages) rows.emplace_back(stage.name, text_of_seconds(stage.seconds));
+  rows.emplace_back("total", text_of_seconds(result.total_seconds));
+  return light_table(result.lights) + "\n" + aligned_rows(rows);
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,31 @@
+#pragma once
+// What people read.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace chiaro::cli {
+
+using TextRow = std::pair<std::string, std::string>;
+
+// "  name   value" lines, the values aligned.
+std::string aligned_rows(const std::vector<TextRow>& rows);
+
+// Lines of cells; the first row is the heading; columns aligned to the right but the first.
+std::string table(const std::vector<std::vector<std::string>>& rows);
+
+std::string text_of_vector(renderer::Vec3f v);  // "1.25 0 -3"
+std::string text_of_seconds(double seconds);    // "0.31 s", "4 min 05 s"
+std::string text_of_percent(double fraction);   // "4.12 %"
+std::string text_of_bytes(double bytes);        // "1.2 GB"
+
+// The same in one line: line ends and other control characters become spaces.
+std::string one_line(const std::string& text);
+
+// Error when standard output does not take it.
+void print(const std::string& text);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,81 @@
+#include "cli/transport_options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/add_options.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr int kMaxSamples = 1 << 24;
+constexpr int kMaxBounces = 10000;
+constexpr double kLeastFractionOnSurface = 0.5;
+
+}  // namespace
+
+void add_transport_options(CLI::App& command, TransportOptions& options, const std::string& samples_help) {
+  add_count(command, {"--samples", "N", fmt::format("{} (default {})", samples_help, options.samples)}, options.samples,
+            {1, kMaxSamples});
+  add_count(command, {"--bounces", "B", "Indirect bounces, 0 = direct only (default: until they no longer matter)"},
+            options.bounces, {0, kMaxBounces});
+  add_material_options(command, options.materials);
+}
+
+renderer::TraceOptions trace_options(const TransportOptions& transport, const CommonOptions& common) {
+  return {.samples = transport.samples, .bounces = transport.bounces.value_or(-1), .seed = common.seed};
+}
+
+inverse::BakeSettings bake_settings(const TransportOptions& transport, const CommonOptions& common) {
+  return {.samples = transport.samples,
+          .bounces = transport.bounces.value_or(-1),
+          .seed = common.seed,
+          .materials = text_of_materials(transport.materials)};
+}
+
+void add_grid_options(CLI::App& command, GridOptions& options) {
+  add_parsed(command, {"--grid", "X,Y,Z", "Lights along x, y and z (default: about 1000 together)"},
+             [&options](const std::string& text) { options.counts = parse_grid(text); });
+  add_parsed(command,
+             {"--region", "NODE|x0,y0,z0,x1,y1,z1",
+              "Where lights may stand: the bounds of a node, or a box in metres (default: the whole scene)"},
+             [&options](const std::string& text) { options.region = parse_region_text(text); });
+}
+
+inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options) {
+  inverse::LightGridOptions grid{.counts = options.counts, .region = {}};
+  if (!options.region.empty()) grid.region = inverse::parse_region(scene, options.region);
+  return grid;
+}
+
+void add_max_edge_option(CLI::App& command, float& max_edge) {
+  add_number(command, {"--max-edge", "M", "Split edges longer than M metres (default: from the scene's size)"},
+             max_edge, kPositive);
+}
+
+void add_surface_options(CLI::App& command, SurfaceOptions& options) {
+  add_text(command, {"--on", "R.glb", "The receivers of this file instead of ones made from the scene"}, options.on);
+  add_max_edge_option(command, options.max_edge);
+  command.get_option("--max-edge")->excludes("--on");
+}
+
+inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options) {
+  if (options.on.empty()) return inverse::make_receivers(tracer.scene(), {.max_edge = options.max_edge});
+  inverse::Receivers receivers = inverse::receivers_from_mesh(renderer::load_vertex_mesh(options.on));
+  require_same_scene(tracer, receivers, options.on);
+  return receivers;
+}
+
+void require_same_scene(const renderer::RayTracer& tracer, const inverse::Receivers& receivers,
+                        const std::string& file) {
+  if (receivers.size() == 0) throw renderer::Error({file, "", "has no vertices", "receivers"});
+  const double fraction = inverse::fraction_on_surface(tracer, receivers);
+  if (fraction >= kLeastFractionOnSurface) return;
+  throw renderer::Error(
+      {file, "receivers",
+       fmt::format("belong to another scene: {:.0f} % lie on the surfaces of {}", 100 * fraction, tracer.scene().path),
+       "points on the scene's surfaces"});
+}
+
+}  // namespace chiaro::cli

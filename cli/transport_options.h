@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/common_options.h"
+#include "cli/material_options.h"
+#include "inverse/transport/light_grid.h"
+#include "inverse/transport/receivers.h"
+#include "inverse/transport/transport_cache.h"
+#include "renderer/trace/trace_illumination.h"
+
+namespace chiaro::cli {
+
+// What every command that transports light has.
+struct TransportOptions {
+  MaterialOptions materials;
+  int samples = 256;
+  std::optional<int> bounces;  // indirect ones; absent: until they no longer matter
+};
+
+// `samples_help` says what is sampled; the default is added to it.
+void add_transport_options(CLI::App& command, TransportOptions& options, const std::string& samples_help);
+
+renderer::TraceOptions trace_options(const TransportOptions& transport, const CommonOptions& common);
+inverse::BakeSettings bake_settings(const TransportOptions& transport, const CommonOptions& common);
+
+// --grid and --region.
+struct GridOptions {
+  std::array<int, 3> counts{};
+  std::string region;
+};
+
+void add_grid_options(CLI::App& command, GridOptions& options);
+inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options);
+
+// --on and --max-edge.
+struct SurfaceOptions {
+  std::string on;
+  float max_edge = 0;  // metres; 0: from the scene's size
+};
+
+void add_surface_options(CLI::App& command, SurfaceOptions& options);
+void add_max_edge_option(CLI::App& command, float& max_edge);
+
+// Those of the file given with --on, or made from the scene. Error where the file belongs to another scene.
+inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options);
+
+// Error where fewer than half of the receivers of `file` lie on the scene's surface.
+void require_same_scene(const renderer::RayTracer& tracer, const inverse::Receivers& receivers,
+                        const std::string& file);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,52 @@
+#include "cli/view_options.h"
+
+#include <cmath>
+
+#include "cli/add_options.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr double kMiddleGrey = 0.18;
+constexpr NumberRange kExposureRange{.min = -100, .max = 100};
+
+void parse_exposure(const std::string& text, ViewChoice& choice) {
+  choice.auto_exposure = text == "auto";
+  choice.view.exposure = choice.auto_exposure ? 0 : float(parse_number(text, kExposureRange));
+}
+
+}  // namespace
+
+void add_view_options(CLI::App& command, ViewChoice& choice) {
+  add_parsed(command, {"--ocio", "CONFIG", "OpenColorIO config (default: $OCIO, or the one installed)"},
+             [&choice](const std::string& text) { choice.config = text; });
+  add_text(command, {"--display", "NAME", "Display of the config (default: its first)"}, choice.view.display);
+  add_text(command, {"--view", "NAME", "View of the display (default: its first)"}, choice.view.view);
+  add_parsed(command, {"--exposure", "EV|auto", "Exposure of display pictures (default 0)"},
+             [&choice](const std::string& text) { parse_exposure(text, choice); });
+}
+
+void require_view(const ViewChoice& choice) { displayed(renderer::make_image(1, 1, {"R", "G", "B"}), choice); }
+
+renderer::Image displayed(const renderer::Image& image, const ViewChoice& choice) {
+  renderer::ViewOptions view = choice.view;
+  if (choice.auto_exposure) view.exposure = auto_exposure(image);
+  return renderer::apply_display_view(image, renderer::find_ocio_config(choice.config), view);
+}
+
+float auto_exposure(const renderer::Image& image) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float* pixel = image.at(x, y);
+      const double luminance = renderer::luminance({pixel[0], pixel[1], pixel[2]});
+      if (!std::isfinite(luminance) || luminance <= 0) continue;
+      sum += std::log(luminance);
+      ++count;
+    }
+  }
+  return count == 0 ? 0 : float(std::log2(kMiddleGrey / std::exp(sum / double(count))));
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "renderer/core/vec.h"
+#include "renderer/image/color_management.h"
+#include "renderer/image/image.h"
+
+namespace CLI {
+class App;
+}
+
+namespace chiaro::cli {
+
+// --ocio, --display, --view, --exposure.
+struct ViewChoice {
+  std::optional<std::filesystem::path> config;
+  renderer::ViewOptions view;
+  bool auto_exposure = false;
+};
+
+void add_view_options(CLI::App& command, ViewChoice& choice);
+
+// Error where the config, the display or the view does not exist: asked before the long work starts.
+void require_view(const ViewChoice& choice);
+
+// The image (scene-linear Rec.709) as the view shows it.
+renderer::Image displayed(const renderer::Image& image, const ViewChoice& choice);
+
+// The EV that brings the log-average luminance of the pixels that are neither black nor infinite to 0.18; 0 where there
+// are none.
+float auto_exposure(const renderer::Image& image);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,22 @@
+# Warnings, optimisation and sanitizers, as one interface target.
+
+add_library(chiaro_compiler INTERFACE)
+target_compile_options(chiaro_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno)
+if(CHIARO_WARNINGS_AS_ERRORS)
+  target_compile_options(chiaro_compiler INTERFACE -Werror)
+endif()
+
+# The baseline that every 64-bit PC since 2009 runs; hot kernels are compiled for wider units too and choose at run time.
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  target_compile_options(chiaro_compiler INTERFACE -march=x86-64-v2)
+endif()
+
+if(CHIARO_SANITIZERS)
+  target_compile_options(chiaro_compiler INTERFACE -fsanitize=${CHIARO_SANITIZERS} -fno-omit-frame-pointer)
+  target_link_options(chiaro_compiler INTERFACE -fsanitize=${CHIARO_SANITIZERS})
+  target_compile_definitions(chiaro_compiler INTERFACE CHIARO_SANITIZED)
+elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
+  include(CheckIPOSupported)
+  check_ipo_supported(RESULT ipo_supported OUTPUT ipo_output LANGUAGES CXX)
+  set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ${ipo_supported})
+endif()

@@ -1,0 +1,50 @@
+# Everything that chiaro is built on, from Debian 12's packages. What is missing is named together with its package.
+
+set(missing_packages "")
+
+macro(require_package name debian_package)
+  find_package(${name} ${ARGN} QUIET)
+  if(NOT ${name}_FOUND)
+    string(APPEND missing_packages "\n  ${name}: apt-get install ${debian_package}")
+  endif()
+endmacro()
+
+require_package(embree libembree-dev 3)
+require_package(OpenImageIO libopenimageio-dev)
+require_package(TinyGLTF libtinygltf-dev)
+require_package(Ceres libceres-dev)
+require_package(Eigen3 libeigen3-dev 3.4)
+require_package(TBB libtbb-dev)
+require_package(CLI11 libcli11-dev)
+require_package(nlohmann_json nlohmann-json3-dev)
+require_package(fmt libfmt-dev)
+require_package(nanoflann libnanoflann-dev)
+if(CHIARO_TESTS)
+  require_package(GTest libgtest-dev)
+endif()
+if(CHIARO_BENCHMARKS)
+  require_package(benchmark libbenchmark-dev)
+endif()
+
+# Debian's OpenColorIO has no CMake configuration of its own.
+find_path(opencolorio_include OpenColorIO/OpenColorIO.h)
+find_library(opencolorio_library OpenColorIO)
+if(opencolorio_include AND opencolorio_library)
+  add_library(OpenColorIO::OpenColorIO UNKNOWN IMPORTED)
+  set_target_properties(OpenColorIO::OpenColorIO PROPERTIES
+    IMPORTED_LOCATION ${opencolorio_library} INTERFACE_INCLUDE_DIRECTORIES ${opencolorio_include})
+else()
+  string(APPEND missing_packages "\n  OpenColorIO: apt-get install libopencolorio-dev")
+endif()
+
+# Debian's OpenImageIO names an include folder of OpenCV that is there only with OpenCV's own headers.
+if(TARGET OpenImageIO::OpenImageIO)
+  get_target_property(openimageio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+  list(FILTER openimageio_includes EXCLUDE REGEX "opencv")
+  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${openimageio_includes}")
+endif()
+
+if(missing_packages)
+  message(FATAL_ERROR "chiaro needs packages that are not installed:${missing_packages}\n"
+                      "(or run scenes/demo.sh or tests/run.sh, which install them)")
+endif()

@@ -1,0 +1,32 @@
+#pragma once
+// How many lights, and which: the error of the best found set of every size, and the smallest size that explains the
+// target.
+
+#include <vector>
+
+#include "inverse/solve/light_clusters.h"
+#include "inverse/solve/refine_joint.h"
+
+namespace chiaro::inverse {
+
+struct LightCountOptions {
+  int max_lights = 32;
+  int exact_lights = 0;    // 0: chosen here
+  double noise_floor = 0;  // relative error that the target's noise alone gives
+  double time_limit = 0;   // seconds; 0: none
+};
+
+struct LightCountResult {
+  LightEstimates lights;
+  double error = 0;
+  std::vector<double> error_curve;  // best error found with 1, 2, … lights
+  int refinements = 0;
+  bool out_of_time = false;
+};
+
+// Every cut of the light tree is refined jointly; then lights are inserted where the residual asks for them, and taken
+// away one by one, as long as that gains anything (backward elimination).
+LightCountResult choose_light_count(const LightResponse& response, const Observations& observations,
+                                    const LightTree& tree, const LightCountOptions& options);
+
+}  // namespace chiaro::inverse

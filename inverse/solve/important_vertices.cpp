@@ -1,0 +1,92 @@
+// Chen, Lighting Design with Illumination Brush, 2008, section 3.2.
+
+#include "inverse/solve/important_vertices.h"
+
+#include <algorithm>
+
+#include "inverse/numerics/cotangent_laplacian.h"
+#include "inverse/numerics/weighted_sampling.h"
+#include "renderer/core/control.h"
+#include "renderer/core/sampler.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr int kGeometryRays = 32;
+constexpr double kLeastDensity = 0.02;     // so that no painted receiver is out of reach
+constexpr double kLargestQuantile = 0.99;  // counts as 1: a few slivers must not make all else look flat
+
+// Harmonic mean of the distances to what a receiver sees (3.3); at most `diagonal`.
+double harmonic_mean_distance(const renderer::RayTracer& tracer, const renderer::SurfaceSample& at, double diagonal,
+                              std::uint64_t seed, std::uint32_t stream) {
+  double sum = 0;
+  const renderer::Frame3f frame(at.normal);
+  const Vec3f origin = renderer::offset_point(at.position, at.normal);
+  for (int k = 0; k < kGeometryRays; ++k) {
+    renderer::Sampler sampler(seed, stream, std::uint32_t(k));
+    const Vec3f direction = frame.world_from_local(renderer::sample_cosine_hemisphere(sampler.next_2d()));
+    const auto hit = tracer.intersect({origin, direction, 0, renderer::kInfinity, sampler.next_bits()});
+    if (hit) sum += 1 / std::max(double(hit->distance), 1e-6 * diagonal);
+  }
+  return sum > 0 ? std::min(diagonal, kGeometryRays / sum) : diagonal;
+}
+
+std::vector<double> geometry_term(const renderer::RayTracer& tracer, const Receivers& receivers, std::uint64_t seed) {
+  const double diagonal = double(tracer.bounds().diagonal());
+  std::vector<double> geometry(receivers.size());
+  constexpr std::size_t kBlock = 256;
+  renderer::parallel_for((receivers.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(receivers.size(), (block + 1) * kBlock); ++i) {
+      const double mean = harmonic_mean_distance(tracer, receivers.samples[i], diagonal, seed, std::uint32_t(i));
+      geometry[i] = diagonal - mean;  // (3.3)
+    }
+  });
+  return geometry;
+}
+
+std::vector<double> illumination_term(const Target& target) {
+  const Receivers& r = target.receivers;
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<double> value;  // V of HSV
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    positions.emplace_back(r.positions[i].x, r.positions[i].y, r.positions[i].z);
+    value.push_back(double(max_component(target.illumination[i])));
+  }
+  std::vector<double> laplacian = numerics::cotangent_laplacian(positions, r.triangles, value);
+  for (double& l : laplacian) l = std::abs(l);
+  return laplacian;
+}
+
+void normalize(std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  const auto nth = sorted.begin() + std::ptrdiff_t(kLargestQuantile * double(sorted.size() - 1));
+  std::nth_element(sorted.begin(), nth, sorted.end());
+  double scale = *nth;
+  if (!(scale > 0)) scale = *std::max_element(values.begin(), values.end());
+  for (double& v : values) v = scale > 0 ? std::clamp(v / scale, 0.0, 1.0) : 0;
+}
+
+}  // namespace
+
+Importance choose_important_vertices(const renderer::RayTracer& tracer, const Target& target,
+                                     const ImportanceOptions& options) {
+  Importance importance;
+  importance.geometry = geometry_term(tracer, target.receivers, options.seed);
+  importance.illumination = illumination_term(target);
+  normalize(importance.geometry);
+  normalize(importance.illumination);
+  std::vector<double> density;
+  std::size_t painted = 0;
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+    const double total = options.geometry_weight * importance.geometry[i] +
+                         options.illumination_weight * importance.illumination[i];  // (3.2)
+    importance.total.push_back(target.weight[i] > 0 ? total : 0);
+    density.push_back(target.weight[i] > 0 ? total + kLeastDensity : 0);
+    painted += target.weight[i] > 0 ? 1 : 0;
+  }
+  const std::size_t count = std::min(std::size_t(options.count), painted);
+  importance.chosen = numerics::sample_without_replacement(density, count, options.seed);
+  return importance;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,56 @@
+#include "inverse/solve/observations.h"
+
+#include "inverse/numerics/nnls.h"
+#include "renderer/core/control.h"
+
+namespace chiaro::inverse {
+
+double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity) {
+  return (observations.sqrt_weight.asDiagonal() * column * intensity.matrix().asDiagonal()).norm();
+}
+
+Column total_illumination(const std::vector<Column>& columns, const LightEstimates& lights, Eigen::Index receivers) {
+  Column sum = Column::Zero(receivers, 3);
+  for (std::size_t j = 0; j < lights.size(); ++j) sum += columns[j] * lights[j].intensity.matrix().asDiagonal();
+  return sum;
+}
+
+double relative_error(const Observations& observations, const Column& illumination) {
+  const double norm = (observations.sqrt_weight.asDiagonal() * (illumination - observations.wanted)).norm();
+  return norm / observations.target_norm;
+}
+
+IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns) {
+  const auto n = Eigen::Index(columns.size());
+  IntensityFit fit;
+  fit.intensity.assign(columns.size(), Eigen::Array3d::Zero());
+  std::array<numerics::NnlsResult, 3> results;
+  renderer::parallel_for(3, [&](std::size_t channel) {
+    const auto c = Eigen::Index(channel);
+    Eigen::MatrixXd a(observations.wanted.rows(), n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      a.col(j) = observations.sqrt_weight.cwiseProduct(columns[std::size_t(j)].col(c));
+    }
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
+    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+    const Eigen::VectorXd atb = a.transpose() * observations.sqrt_weight.cwiseProduct(observations.wanted.col(c));
+    results[channel] = numerics::nnls(gram, atb);
+  });
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t j = 0; j < columns.size(); ++j) fit.intensity[j][c] = results[c].x(Eigen::Index(j), 0);
+    fit.kkt_residual = std::max(fit.kkt_residual, results[c].kkt_residual);
+    fit.iterations += results[c].iterations;
+  }
+  return fit;
+}
+
+std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
+                                     VisibilitySource visibility) {
+  std::vector<Column> columns(lights.size());
+  renderer::parallel_for(lights.size(),
+                         [&](std::size_t j) { columns[j] = response.evaluate(lights[j].position, visibility); });
+  return columns;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,45 @@
+#pragma once
+// What a solve fits: wanted illumination at the important vertices, and lights that may produce it.
+
+#include <vector>
+
+#include "inverse/transport/light_response.h"
+
+namespace chiaro::inverse {
+
+// At the important vertices. residual of receiver i, channel c = sqrt_weight[i] · (Σ_j l_jc φ_j(i, c) − wanted(i, c)).
+struct Observations {
+  Column wanted;  // cd/m², the fixed part (emission, kept lights) taken off
+  Eigen::VectorXd sqrt_weight;
+  double target_norm = 0;  // √Σ weight · Ψ², of the whole target at these vertices: the denominator of (3.6)
+};
+
+// A light being sought.
+struct LightEstimate {
+  Eigen::Vector3d position;  // metres
+  Eigen::Array3d intensity;  // candela per channel, ≥ 0
+};
+using LightEstimates = std::vector<LightEstimate>;
+
+// ‖ weighted column times intensity ‖: the light's contribution (3.5).
+double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity);
+
+// Illumination of all lights together; columns[j] belongs to lights[j].
+Column total_illumination(const std::vector<Column>& columns, const LightEstimates& lights, Eigen::Index receivers);
+
+// D(I(p), Ψ) of eq. (3.6) over the important vertices.
+double relative_error(const Observations& observations, const Column& illumination);
+
+// Intensities by non-negative least squares for fixed columns, one system per colour channel.
+struct IntensityFit {
+  std::vector<Eigen::Array3d> intensity;
+  double kkt_residual = 0;
+  int iterations = 0;
+};
+IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns);
+
+// Columns of all lights, evaluated in parallel.
+std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
+                                     VisibilitySource visibility);
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,56 @@
+#include "inverse/solve/prepare_transport.h"
+
+#include <fmt/format.h>
+
+#include "inverse/transport/bake.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::Error;
+
+void check_cache(const SolveProblem& problem) {
+  const std::string file = problem.cache_file->string();
+  const TransportCache header = load_transport_cache_header(*problem.cache_file);
+  if (header.settings.materials != problem.bake.materials) {
+    throw Error({file, "header", fmt::format("stale cache: baked with materials \"{}\"", header.settings.materials),
+                 fmt::format("\"{}\"", problem.bake.materials)});
+  }
+  if (header.scene_fingerprint != renderer::fingerprint(problem.tracer.scene())) {
+    throw Error({file, "header", "stale cache: baked for another scene, or the scene has changed since",
+                 "a cache of " + problem.tracer.scene().path + ": bake again"});
+  }
+  if (header.receiver_fingerprint != fingerprint(problem.target.receivers)) {
+    throw Error({file, "header", "stale cache: baked for other receivers than the target's",
+                 "a cache baked with --on the target or the receivers it was painted on"});
+  }
+  if (header.settings.bounces != problem.bake.bounces) {
+    throw Error({file, "header", fmt::format("stale cache: baked with {} bounces", header.settings.bounces),
+                 fmt::format("{} (-1: all)", problem.bake.bounces)});
+  }
+}
+
+Receivers select_receivers(const Receivers& all, const std::vector<std::size_t>& chosen) {
+  Receivers some;
+  for (const std::size_t i : chosen) {
+    some.positions.push_back(all.positions[i]);
+    some.normals.push_back(all.normals[i]);
+    some.samples.push_back(all.samples[i]);
+  }
+  return some;
+}
+
+}  // namespace
+
+PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
+                                    const renderer::Control& control) {
+  if (problem.cache_file) {
+    check_cache(problem);
+    return {load_transport_cache(*problem.cache_file, chosen)};
+  }
+  const LightGrid grid = make_light_grid(problem.tracer, problem.grid);
+  return {bake(problem.tracer, select_receivers(problem.target.receivers, chosen), grid, problem.bake, control).cache};
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "inverse/solve/solve.h"
+
+namespace chiaro::inverse {
+
+struct PreparedTransport {
+  TransportCache cache;  // of the chosen receivers only, in their order
+};
+
+// From the problem's cache file, or baked for the chosen receivers alone. Error for a cache that belongs to other
+// receivers, another scene or other materials.
+PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
+                                    const renderer::Control& control);
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "inverse/solve/observations.h"
+
+namespace chiaro::inverse {
+
+struct JointRefinement {
+  LightEstimates lights;
+  double error = 0;  // (3.6)
+  int iterations = 0;
+  std::string termination;
+};
+
+struct JointRefinementOptions {
+  int max_iterations = 40;
+  double function_tolerance = 1e-6;
+};
+
+// Levenberg–Marquardt over all positions and intensities at once, with analytic Jacobians at fixed visibility;
+// positions inside the grid's region, intensities ≥ 0. Never worse than `start`.
+JointRefinement refine_joint(const LightResponse& response, const Observations& observations,
+                             const LightEstimates& start, const JointRefinementOptions& options = {});
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,233 @@
+#include "inverse/solve/solve.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/important_vertices.h"
+#include "inverse/solve/optimize_simplex.h"
+#include "inverse/solve/prepare_transport.h"
+#include "inverse/solve/report.h"
+#include "inverse/solve/stage_clock.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::Error;
+
+constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
+constexpr double kVerificationPaths = 8e6;        // spent on the fresh evaluation, if not asked otherwise
+constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 512;
+constexpr int kFixedSamples = 512;
+constexpr double kOnSurface = 0.5;  // of a target's receivers must lie on the scene
+
+// Seeds of a solve's own path tracing differ from those that a target was traced with, whatever seed the user gave
+// both.
+std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t purpose) { return seed * 1000003 + 0x5eedf00dULL + purpose; }
+
+void check_target(const SolveProblem& problem) {
+  const double fraction = fraction_on_surface(problem.tracer, problem.target.receivers);
+  if (fraction >= kOnSurface) return;
+  throw Error({problem.tracer.scene().path, "target",
+               fmt::format("only {:.0f} % of the target's vertices lie on the scene: it is a target of another scene",
+                           100 * fraction),
+               "a target on this scene's surfaces"});
+}
+
+template <class T>
+std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_t>& indices) {
+  std::vector<T> chosen;
+  for (const std::size_t i : indices) chosen.push_back(values[i]);
+  return chosen;
+}
+
+bool has_fixed_light(const SolveProblem& problem) {
+  const auto& materials = problem.tracer.scene().materials;
+  return !problem.kept_lights.empty() ||
+         std::any_of(materials.begin(), materials.end(),
+                     [](const renderer::Material& m) { return max_component(m.emission) > 0; });
+}
+
+// What shines without the lights sought: emissive surfaces and kept lights.
+std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
+                                      const SolveOptions& options, const renderer::Control& control) {
+  if (!has_fixed_light(problem)) return std::vector<Vec3f>(at.size());
+  const renderer::TraceOptions trace{kFixedSamples, problem.bake.bounces, fresh_seed(options.seed, 1), true};
+  return trace_illumination(problem.tracer, at, problem.kept_lights, trace, control).value;
+}
+
+Observations observe(const Target& target, const std::vector<std::size_t>& chosen, const std::vector<Vec3f>& fixed) {
+  Observations o;
+  const auto m = Eigen::Index(chosen.size());
+  o.wanted.resize(m, 3);
+  o.sqrt_weight.resize(m);
+  double norm = 0;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const std::size_t r = chosen[std::size_t(i)];
+    o.sqrt_weight[i] = std::sqrt(double(target.weight[r]));
+    for (int c = 0; c < 3; ++c) o.wanted(i, c) = double(target.illumination[r][c] - fixed[std::size_t(i)][c]);
+    norm += double(target.weight[r]) * double(length_squared(target.illumination[r]));
+  }
+  o.target_norm = std::sqrt(norm);
+  return o;
+}
+
+// sqrt(Σ w se²) / sqrt(Σ w Ψ²) over the given receivers; 0 where the target does not say.
+double target_noise(const Target& target, const std::vector<std::size_t>& at) {
+  if (target.standard_error.empty()) return 0;
+  double error = 0, value = 0;
+  for (const std::size_t i : at) {
+    error += 3 * double(target.weight[i]) * double(target.standard_error[i]) * double(target.standard_error[i]);
+    value += double(target.weight[i]) * double(length_squared(target.illumination[i]));
+  }
+  return value > 0 ? std::sqrt(error / value) : 0;
+}
+
+std::vector<std::size_t> all_indices(std::size_t count) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  return indices;
+}
+
+renderer::PointLight point_light(const LightEstimate& e, std::size_t number) {
+  renderer::PointLight light;
+  light.name = fmt::format("light{}", number);
+  for (int a = 0; a < 3; ++a) light.position[a] = float(e.position[a]), light.intensity[a] = float(e.intensity[a]);
+  return light;
+}
+
+// Brightest contribution first.
+std::vector<FoundLight> found_lights(const LightResponse& response, const Observations& observations,
+                                     const LightEstimates& lights) {
+  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  std::vector<double> norm;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    norm.push_back(contribution_norm(observations, columns[j], lights[j].intensity));
+  }
+  const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
+  std::vector<std::size_t> order = all_indices(lights.size());
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
+  std::vector<FoundLight> found;
+  for (const std::size_t j : order) found.push_back({point_light(lights[j], found.size() + 1), norm[j] / total});
+  return found;
+}
+
+struct Optimum {
+  LightEstimates lights;
+  double initial_error = 0, error = 0;
+  std::string termination;
+};
+
+// Sections 3.4.2 and 3.4.3.
+Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
+                              const SolveOptions& options, StageClock& clock) {
+  CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
+  if (options.exact_lights > 0) cut_options = {0, options.exact_lights, options.exact_lights};
+  const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
+  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
+  const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
+  clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
+  const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
+  return {optimum.lights, cut.error, optimum.error,
+          reached ? "error threshold of the lightcut met" : "every cluster is a light"};
+}
+
+Optimum optimize_jointly(const LightResponse& response, const Observations& observations, const LightTree& tree,
+                         const SolveOptions& options, double noise, StageClock& clock) {
+  CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
+  const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
+  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
+  const LightCountResult count = choose_light_count(
+      response, observations, tree, {options.max_lights, options.exact_lights, noise, options.time_limit});
+  StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}};
+  for (std::size_t n = 0; n < count.error_curve.size(); ++n) {
+    figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
+  }
+  clock.finish("joint_refinement", figures);
+  return {count.lights, cut.error, count.error, count.out_of_time ? "time limit" : "no further light explains more"};
+}
+
+int verification_samples(const SolveOptions& options, std::size_t receivers) {
+  if (options.verification_samples > 0) return options.verification_samples;
+  return std::clamp(int(kVerificationPaths / double(receivers)), kLeastVerificationSamples, kMostVerificationSamples);
+}
+
+void verify(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+            SolveResult& result) {
+  renderer::Lights lights = problem.kept_lights;
+  for (const FoundLight& found : result.lights) lights.emplace_back(found.light);
+  const Target& target = problem.target;
+  const renderer::TraceOptions trace{verification_samples(options, target.receivers.size()), problem.bake.bounces,
+                                     fresh_seed(options.seed, 2), true};
+  const auto traced = trace_illumination(problem.tracer, target.receivers.samples, lights, trace, control);
+  result.illumination = traced.value;
+  result.verification_noise = relative_standard_error(traced);
+  result.relative_l2 = relative_l2(traced.value, target.illumination, target.weight);
+}
+
+[[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {
+  throw Error({problem.tracer.scene().path, "solve", "no light possible: " + why,
+               "a target that lights inside the region can produce"});
+}
+
+}  // namespace
+
+SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
+  StageClock clock;
+  SolveResult result;
+  check_target(problem);
+
+  const Importance importance = choose_important_vertices(
+      problem.tracer, problem.target,
+      {options.important_vertices, options.geometry_weight, options.illumination_weight, fresh_seed(options.seed, 3)});
+  result.important_vertices = int(importance.chosen.size());
+  result.initial_seconds += clock.finish("important_vertices", {{"count", double(importance.chosen.size())}});
+
+  const PreparedTransport transport = prepare_transport(problem, importance.chosen, control);
+  result.cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
+                                                {"indirect_relative_error", transport.cache.indirect_relative_error}});
+  const auto samples = select(problem.target.receivers.samples, importance.chosen);
+  const Observations observations =
+      observe(problem.target, importance.chosen, fixed_illumination(problem, samples, options, control));
+  if (!(observations.wanted.array() > 0).any())
+    no_light_possible(problem, "the target is nowhere brighter than what shines already");
+  const LightResponse response(problem.tracer, samples, transport.cache);
+  clock.finish("fixed_illumination", {});
+
+  const LightDistribution distribution = estimate_light_distribution(response, observations, options.weak_light);
+  if (distribution.rounds[1].lights.empty())
+    no_light_possible(problem, "no position in the region lights the painted surfaces");
+  result.initial_seconds += clock.finish("nnls", distribution_figures(distribution));
+  const LightEstimates clusters = segment_distribution(distribution, observations);
+  result.initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
+
+  const LightTree tree = make_light_tree(response, observations, clusters);
+  result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
+  const double noise = target_noise(problem.target, importance.chosen);
+  const double before = clock.total();
+  const Optimum optimum = options.method == SolveMethod::kThesis
+                              ? optimize_as_published(response, observations, tree, options, clock)
+                              : optimize_jointly(response, observations, tree, options, noise, clock);
+  result.optimal_seconds += clock.total() - before;
+
+  result.lights = found_lights(response, observations, optimum.lights);
+  result.initial_relative_l2 = optimum.initial_error;
+  result.relative_l2_cached = optimum.error;
+  result.termination = optimum.termination;
+  result.target_noise = target_noise(problem.target, all_indices(problem.target.receivers.size()));
+  verify(problem, options, control, result);
+  clock.finish("verification",
+               {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
+  if (!options.report_folder.empty()) {
+    write_report({problem.target, importance, distribution, clusters, tree, optimum.lights, result.illumination},
+                 options.report_folder);
+    clock.finish("report", {});
+  }
+  result.stages = clock.stages();
+  result.total_seconds = clock.total();
+  return result;
+}
+
+}  // namespace chiaro::inverse

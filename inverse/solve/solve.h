@@ -1,0 +1,74 @@
+#pragma once
+// The main job: the lights that produce a target.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inverse/target/target.h"
+#include "inverse/transport/transport_cache.h"
+#include "renderer/core/control.h"
+#include "renderer/scene/light.h"
+
+namespace chiaro::inverse {
+
+enum class SolveMethod : std::uint8_t {
+  kThesis,  // the published pipeline, step for step
+  kJoint,   // its front end, then a joint refinement of all positions and intensities (the default)
+};
+
+struct SolveOptions {
+  SolveMethod method = SolveMethod::kJoint;
+  int important_vertices = 1000;
+  double geometry_weight = 1, illumination_weight = 1;  // w1, w2 of eq. (3.2)
+  double weak_light = 0.02;                             // w of eq. (3.5)
+  std::optional<double> error_threshold;                // of the lightcut, relative L2; absent: from the method
+  int max_lights = 32;
+  int exact_lights = 0;   // 0: as many as it takes
+  double time_limit = 0;  // seconds; 0: none
+  int verification_samples =
+      0;  // paths per receiver of the final, fresh evaluation; 0: 16 to 512 by the number of receivers
+  std::uint64_t seed = 0;
+  std::filesystem::path report_folder;  // empty: none; what each stage found is written there as glTF and JSON
+};
+
+struct FoundLight {
+  renderer::PointLight light;
+  double contribution = 0;  // ‖its illumination‖ / Σ over all found
+};
+
+struct StageReport {
+  std::string name;
+  double seconds = 0;
+  std::vector<std::pair<std::string, double>> figures;
+};
+
+struct SolveResult {
+  std::vector<FoundLight> lights;  // brightest contribution first
+  double relative_l2 = 0;          // traced afresh, all receivers
+  double relative_l2_cached = 0;   // by the cache
+  double initial_relative_l2 = 0;  // by the cache, before the last optimisation
+  double verification_noise = 0;   // relative standard error of the fresh evaluation
+  double target_noise = 0;         // relative L2 that the target's own noise is expected to give; 0: not known
+  double initial_seconds = 0, optimal_seconds = 0, cache_seconds = 0, total_seconds = 0;
+  std::vector<StageReport> stages;
+  int important_vertices = 0;
+  std::string termination;
+  std::vector<Vec3f> illumination;  // of the found lights and the fixed part, traced afresh, per receiver
+};
+
+struct SolveProblem {
+  const renderer::RayTracer& tracer;
+  const Target& target;
+  std::optional<std::filesystem::path> cache_file;  // absent: baked here
+  LightGridOptions grid;                            // for a bake here
+  BakeSettings bake;                                // for a bake here; of a cache file: its materials must agree
+  renderer::Lights kept_lights;                     // stay lit, untouched
+};
+
+// Error for a target of another scene, a stale cache, or a target that no light can produce ("no light possible").
+SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control = {});
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,86 @@
+#include "inverse/target/paint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "inverse/target/brush_footprint.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+// Of the distance in radii, 0 to 1; 1 at the path.
+float falloff(BrushFalloff kind, float x) {
+  switch (kind) {
+    case BrushFalloff::kHard:
+      return 1;
+    case BrushFalloff::kSmooth:
+      return 1 - x * x * (3 - 2 * x);
+    case BrushFalloff::kGaussian:
+      break;
+  }
+  // The radius is three standard deviations; shifted and scaled, so that it ends at 0 there without a rim.
+  const float rim = std::exp(-4.5F);
+  return std::max(0.0F, (std::exp(-4.5F * x * x) - rim) / (1 - rim));
+}
+
+// What a brush does to a value: gain · value + offset.
+struct Change {
+  Vec3f gain, offset;
+};
+
+Change brush_change(const Stroke& stroke, float strength) {
+  const Vec3f one{1, 1, 1};
+  switch (stroke.mode) {
+    case BrushMode::kAdd:
+      return {one, strength * stroke.color};
+    case BrushMode::kSet:
+      return {(1 - strength) * one, strength * stroke.color};
+    case BrushMode::kMultiply:
+      return {lerp(strength, one, stroke.color), {}};
+    case BrushMode::kErase:
+      break;
+  }
+  return {(1 - strength) * one, {}};
+}
+
+Vec3f apply(const Change& change, Vec3f value) {
+  const Vec3f changed = change.gain * value + change.offset;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return {std::clamp(changed.x, 0.0F, kMost), std::clamp(changed.y, 0.0F, kMost), std::clamp(changed.z, 0.0F, kMost)};
+}
+
+void apply_to_receiver(Target& target, const Stroke& stroke, const TouchedReceiver& touched) {
+  const float strength = stroke.opacity * falloff(stroke.falloff, touched.distance / stroke.radius);
+  const Change change = brush_change(stroke, strength);
+  const std::size_t i = touched.receiver;
+  target.illumination[i] = apply(change, target.illumination[i]);
+  target.weight[i] = stroke.weight;
+  // Paint is free of noise: of a traced value's error only what the gain leaves stays.
+  if (!target.standard_error.empty()) target.standard_error[i] *= length(change.gain) / std::sqrt(3.0F);
+}
+
+void check_options(const PaintOptions& options) {
+  if (std::isfinite(options.unpainted_weight) && options.unpainted_weight >= 0) return;
+  throw renderer::Error({"", "option --unpainted-weight", "is negative or not finite", "a number ≥ 0"});
+}
+
+}  // namespace
+
+PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options) {
+  check_options(options);
+  CHIARO_CHECK(base.illumination.size() == base.receivers.size());
+  PaintResult result{base, {}};
+  result.target.weight.assign(base.receivers.size(), options.unpainted_weight);
+  const BoxTree surface = make_surface_tree(base.receivers);
+  for (const Stroke& stroke : strokes.strokes) {
+    CHIARO_CHECK(stroke.radius > 0 && !stroke.path.empty());
+    const std::vector<TouchedReceiver> footprint = brush_footprint(base.receivers, surface, stroke);
+    for (const TouchedReceiver& touched : footprint) apply_to_receiver(result.target, stroke, touched);
+    result.touched.push_back(footprint.size());
+  }
+  return result;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,49 @@
+#pragma once
+// The illumination brush.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "inverse/target/target.h"
+
+namespace chiaro::inverse {
+
+enum class BrushMode : std::uint8_t { kAdd, kSet, kMultiply, kErase };
+enum class BrushFalloff : std::uint8_t { kSmooth, kHard, kGaussian };
+
+struct Stroke {
+  BrushMode mode = BrushMode::kAdd;
+  Vec3f color;            // cd/m²; kMultiply: factors
+  float radius = 0.3F;    // metres
+  BrushFalloff falloff = BrushFalloff::kSmooth;
+  float opacity = 1;
+  std::vector<Vec3f> path;  // metres, on the surface
+  bool facing = true;       // touch only receivers that face the side the stroke was painted from
+  float weight = 1;         // given to the receivers touched
+};
+
+enum class StrokeBase : std::uint8_t { kBlack, kCurrent };
+
+struct Strokes {
+  StrokeBase base = StrokeBase::kBlack;
+  std::vector<Stroke> strokes;
+};
+
+// JSON as in docs; Error naming the stroke and the field.
+Strokes load_strokes(const std::filesystem::path& path);
+
+struct PaintOptions {
+  float unpainted_weight = 0.05F;
+};
+
+struct PaintResult {
+  Target target;
+  std::vector<std::size_t> touched;  // receivers per stroke
+};
+
+// Applies the strokes in order to `base` (its illumination is what the strokes change; its weights become
+// unpainted_weight where no stroke touches). Distance is measured to the path's segments.
+PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options);
+
+}  // namespace chiaro::inverse

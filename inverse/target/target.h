@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "inverse/transport/receivers.h"
+
+namespace chiaro::inverse {
+
+// Wanted illumination: what somebody painted.
+struct Target {
+  Receivers receivers;
+  std::vector<Vec3f> illumination;    // cd/m² per receiver
+  std::vector<float> weight;          // per receiver, ≥ 0
+  std::vector<float> standard_error;  // cd/m² per receiver; empty: not known
+};
+
+// `.glb`/`.gltf` with _ILLUMINATION, or COLOR_0 × target_scale (cd/m²) where that is absent. Error where a file has
+// neither ("an empty target"), or where every value or every weight is zero.
+Target load_target(const std::filesystem::path& path, float target_scale = 1);
+void save_target(const Target& target, const std::filesystem::path& path);
+
+// _STANDARD_ERROR of a traced illumination: root mean square over the channels.
+std::vector<float> standard_error_per_receiver(const renderer::Illumination& illumination);
+
+// ‖a − b‖ / ‖b‖ over receivers and channels, each receiver weighted (eq. 3.6). b is the reference.
+double relative_l2(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b, const std::vector<float>& weight);
+
+}  // namespace chiaro::inverse

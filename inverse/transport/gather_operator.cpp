@@ -1,0 +1,205 @@
+#include "inverse/transport/gather_operator.h"
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include <nanoflann.hpp>
+
+#include "renderer/core/sampler.h"
+#include "renderer/trace/bsdf.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::RayTracer;
+using renderer::Sampler;
+using renderer::SurfacePoint;
+using renderer::SurfaceSample;
+using renderer::Vec3f;
+
+constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
+constexpr int kRaysPerGatherPoint = 64;
+constexpr float kOrientationWeight = 3.0F;  // turning a normal by 1 counts as this many spacings
+constexpr int kMostBounces = 400;
+constexpr double kNegligibleBounce = 1e-4;  // of the light so far
+
+struct GatherHit {
+  SurfaceSample at;
+  Vec3f albedo;
+};
+
+std::optional<GatherHit> gather(const RayTracer& tracer, const SurfaceSample& from, Sampler& sampler) {
+  const Vec3f local = renderer::sample_cosine_hemisphere(sampler.next_2d());
+  const Vec3f direction = normalize(renderer::Frame3f(from.normal).world_from_local(local));
+  const renderer::Ray ray{renderer::offset_point(from.position, from.normal), direction, 0, renderer::kInfinity,
+                          sampler.next_bits()};
+  const auto hit = tracer.intersect(ray);
+  if (!hit) return std::nullopt;
+  const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
+  return GatherHit{{point.position, point.shading_normal}, hemispherical_albedo(point)};
+}
+
+std::vector<SurfaceSample> trace_gather_path(const RayTracer& tracer, SurfaceSample from, Sampler sampler) {
+  std::vector<SurfaceSample> path;
+  for (int vertex = 0; vertex < kPathLength; ++vertex) {
+    const auto hit = gather(tracer, from, sampler);
+    if (!hit) break;
+    path.push_back(hit->at);
+    if (!(sampler.next_1d() < max_component(hit->albedo))) break;
+    from = hit->at;
+  }
+  return path;
+}
+
+// Gather points by importance: where paths from the receivers go.
+std::vector<SurfaceSample> choose_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
+                                                const GatherOptions& options) {
+  const std::size_t wanted = std::size_t(options.samples) * options.points_per_sample;
+  std::vector<std::vector<SurfaceSample>> paths(wanted);
+  renderer::parallel_for(wanted, [&](std::size_t i) {
+    const std::size_t receiver = i * receivers.size() / wanted;
+    paths[i] = trace_gather_path(tracer, receivers[receiver], Sampler(options.seed + 1, 0, std::uint32_t(i)));
+  });
+  std::vector<SurfaceSample> all;
+  for (const auto& path : paths) all.insert(all.end(), path.begin(), path.end());
+  std::vector<SurfaceSample> chosen;
+  const std::size_t count = std::min(wanted, all.size());
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  return chosen;
+}
+
+// The nearest gather point in position and orientation.
+class NearestGatherPoint {
+ public:
+  NearestGatherPoint(const std::vector<SurfaceSample>& points, float spacing)
+      : scale_(kOrientationWeight * spacing), cloud_{points, scale_}, tree_(6, cloud_, {8}) {
+    tree_.buildIndex();
+  }
+
+  std::uint32_t find(const SurfaceSample& at) const {
+    const float query[6] = {at.position.x,        at.position.y,        at.position.z,
+                            scale_ * at.normal.x, scale_ * at.normal.y, scale_ * at.normal.z};
+    std::uint32_t index = 0;
+    float squared_distance = 0;
+    tree_.knnSearch(query, 1, &index, &squared_distance);
+    return index;
+  }
+
+ private:
+  struct Cloud {
+    const std::vector<SurfaceSample>& points;
+    float scale;
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    float kdtree_get_pt(std::uint32_t i, std::size_t d) const {
+      return d < 3 ? points[i].position[int(d)] : scale * points[i].normal[int(d) - 3];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 6, std::uint32_t>;
+
+  float scale_;
+  Cloud cloud_;
+  Tree tree_;
+};
+
+// Mean distance between neighbours if the points lay evenly on a box of the scene's size.
+float typical_spacing(const RayTracer& tracer, std::size_t points) {
+  const Vec3f e = tracer.bounds().extent();
+  return std::sqrt(2 * (e.x * e.y + e.y * e.z + e.z * e.x) / float(std::max<std::size_t>(1, points)));
+}
+
+SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from, int rays, std::uint64_t seed,
+                           const NearestGatherPoint& nearest, const renderer::Control& control) {
+  std::vector<std::vector<SparseTransport::Entry>> rows(from.size());
+  constexpr std::size_t kBlock = 32;
+  renderer::parallel_for((from.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(from.size(), (block + 1) * kBlock); ++i) {
+      for (int k = 0; k < rays; ++k) {
+        Sampler sampler(seed, std::uint32_t(i), std::uint32_t(k));
+        if (const auto hit = gather(tracer, from[i], sampler)) {
+          rows[i].push_back({nearest.find(hit->at), hit->albedo / float(rays)});
+        }
+      }
+    }
+  });
+  return SparseTransport::from_rows(std::move(rows));
+}
+
+double squared_norm(std::span<const LightBlock> blocks) {
+  double sum = 0;
+  for (const LightBlock& block : blocks) {
+    for (const auto& channel : block.channel) {
+      for (const float v : channel) sum += double(v) * double(v);
+    }
+  }
+  return sum;
+}
+
+void add(std::span<LightBlock> sum, std::span<const LightBlock> term) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      for (int l = 0; l < kLightBlock; ++l) sum[i].channel[c][l] += term[i].channel[c][l];
+    }
+  }
+}
+
+std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const GatherOperator& gather,
+                                                std::span<const Vec3f> lights) {
+  std::vector<LightBlock> direct(gather.points.size());
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    for (std::size_t i = 0; i < gather.points.size(); ++i) {
+      const SurfaceSample& at = gather.points[i];
+      const float value = unoccluded_illumination(at, lights[l]);
+      if (value <= 0) continue;
+      const auto seed = std::uint32_t(i * 0x9e3779b9U + l);
+      if (tracer.occluded_between(lights[l], renderer::offset_point(at.position, at.normal), seed)) continue;
+      for (auto& channel : direct[i].channel) channel[l] = value;
+    }
+  }
+  return direct;
+}
+
+}  // namespace
+
+float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
+  const Vec3f d = light - at.position;
+  const float d2 = length_squared(d), projected = dot(d, at.normal);
+  return projected > 0 ? projected / (renderer::kPi * d2 * std::sqrt(d2)) : 0;
+}
+
+GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
+                                    const GatherOptions& options, const renderer::Control& control) {
+  GatherOperator gather;
+  gather.bounces = options.bounces;
+  if (options.bounces == 0) return gather;
+  gather.points = choose_gather_points(tracer, receivers, options);
+  if (gather.points.empty()) return gather;
+  const NearestGatherPoint nearest(gather.points, typical_spacing(tracer, gather.points.size()));
+  gather.point_from_point = trace_rows(tracer, gather.points, kRaysPerGatherPoint, options.seed + 2, nearest, control);
+  gather.receiver_from_point = trace_rows(tracer, receivers, options.samples, options.seed + 3, nearest, control);
+  gather.ray_count = gather.points.size() * kRaysPerGatherPoint + receivers.size() * std::size_t(options.samples);
+  return gather;
+}
+
+std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const GatherOperator& gather,
+                                              std::span<const Vec3f> lights) {
+  std::vector<LightBlock> result(gather.receiver_from_point.row_count());
+  if (gather.points.empty()) return result;
+  std::vector<LightBlock> term = direct_at_gather_points(tracer, gather, lights);
+  std::vector<LightBlock> sum = term, next(term.size());
+  const int bounces = gather.bounces < 0 ? kMostBounces : gather.bounces;
+  for (int bounce = 1; bounce < bounces; ++bounce) {
+    multiply(gather.point_from_point, term, next);
+    std::swap(term, next);
+    add(sum, term);
+    if (gather.bounces < 0 && squared_norm(term) <= kNegligibleBounce * kNegligibleBounce * squared_norm(sum)) break;
+  }
+  multiply(gather.receiver_from_point, sum, result);
+  return result;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,48 @@
+#pragma once
+// Indirect transport that does not know where the light is.
+//
+//   g        gather points: surface points that the receivers' light paths reach
+//   D        direct illumination at the gather points under one light
+//   K_gg     their illumination by each other, one bounce: K_gg[a][b] = albedo-weighted share of b in the hemisphere of
+//   a K_rg     the receivers' illumination by the gather points indirect = K_rg (D + K_gg D + K_gg² D + …)
+//
+// Rays from receivers and gather points go to the nearest gather point of like orientation, with the albedo of the very
+// spot that they hit. Surfaces count as Lambertian with their hemispherical albedo. The bias of both shrinks with
+// `samples` (more gather points), or is the material's; a bake measures it against the path tracer.
+// Source: Hašan, Pellacini, Bala, Direct-to-Indirect Transfer for Cinematic Relighting, 2006.
+
+#include <vector>
+
+#include "inverse/transport/sparse_transport.h"
+#include "renderer/core/control.h"
+#include "renderer/trace/trace_illumination.h"
+
+namespace chiaro::inverse {
+
+struct GatherOperator {
+  std::vector<renderer::SurfaceSample> points;
+  SparseTransport point_from_point;     // K_gg
+  SparseTransport receiver_from_point;  // K_rg
+  int bounces = -1;                     // as TraceOptions
+  std::size_t ray_count = 0;
+};
+
+struct GatherOptions {
+  int samples = 256;           // rays per receiver
+  int points_per_sample = 32;  // gather points = samples × this
+  int bounces = -1;
+  std::uint64_t seed = 0;
+};
+
+GatherOperator make_gather_operator(const renderer::RayTracer& tracer,
+                                    std::span<const renderer::SurfaceSample> receivers, const GatherOptions& options,
+                                    const renderer::Control& control = {});
+
+// Indirect illumination of all receivers under up to kLightBlock unity lights (1 cd per channel).
+std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
+                                              std::span<const renderer::Vec3f> lights);
+
+// Illumination of a surface sample by a unity light if nothing stands between: cosθ / (π d²), 0 below the horizon.
+float unoccluded_illumination(const renderer::SurfaceSample& at, renderer::Vec3f light);
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,172 @@
+#include "inverse/transport/light_grid.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "renderer/core/control.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::Error;
+
+constexpr double kDefaultLights = 700;
+constexpr float kDefaultInset = 0.04F;   // of the scene's extent, on every side
+constexpr float kInsideFraction = 0.6F;  // of probe rays that meet back faces, inside a solid
+constexpr float kTouching = 0.02F;       // of the spacing
+
+// The 6 faces' and 8 corners' directions of a cube, turned a little so that they do not run along walls.
+std::vector<Vec3f> probe_directions() {
+  std::vector<Vec3f> directions;
+  const auto turned = [](Vec3f d) {
+    return normalize(d + 0.031F * Vec3f{d.y, d.z, -d.x} + Vec3f{0.007F, 0.011F, 0.013F});
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0F, 1.0F}) {
+      Vec3f d;
+      d[axis] = sign;
+      directions.push_back(turned(d));
+    }
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    directions.push_back(turned({corner & 1 ? 1.0F : -1.0F, corner & 2 ? 1.0F : -1.0F, corner & 4 ? 1.0F : -1.0F}));
+  }
+  return directions;
+}
+
+struct Probe {
+  float back_fraction = 0;
+  float nearest = renderer::kInfinity;  // metres
+};
+
+Probe probe(const renderer::RayTracer& tracer, Vec3f position, const std::vector<Vec3f>& directions) {
+  Probe result;
+  for (const Vec3f& direction : directions) {
+    const auto hit = tracer.intersect({position, direction, 0, renderer::kInfinity, 0});
+    if (!hit) continue;
+    const renderer::Instance& instance = tracer.scene().instances[hit->instance];
+    const auto& material = tracer.scene().materials[tracer.scene().meshes[instance.mesh].material];
+    const bool back = !material.double_sided && dot(hit->geometric_normal, direction) > 0;
+    result.back_fraction += (back ? 1.0F : 0.0F) / float(directions.size());
+    result.nearest = std::min(result.nearest, hit->distance);
+  }
+  return result;
+}
+
+std::array<int, 3> default_counts(Vec3f extent) {
+  // Spacing from the volume; a flat or thin region counts as a plane or a line.
+  double volume = 1;
+  int dimensions = 0;
+  const double longest = renderer::max_component(extent);
+  for (int a = 0; a < 3; ++a) {
+    if (extent[a] > 0.02 * longest) volume *= double(extent[a]), ++dimensions;
+  }
+  const double spacing = dimensions > 0 ? std::pow(volume / kDefaultLights, 1.0 / dimensions) : 1;
+  std::array<int, 3> counts{};
+  for (int a = 0; a < 3; ++a) {
+    counts[a] = extent[a] > 0.02 * longest ? std::max(2, int(std::lround(double(extent[a]) / spacing)) + 1) : 1;
+  }
+  return counts;
+}
+
+Box3f default_region(const Box3f& bounds) {
+  const Vec3f inset = kDefaultInset * bounds.extent();
+  return {bounds.min + inset, bounds.max - inset};
+}
+
+LightGrid empty_grid(const Box3f& region, const std::array<int, 3>& counts) {
+  LightGrid grid;
+  grid.counts = counts;
+  grid.origin = region.min;
+  for (int a = 0; a < 3; ++a) {
+    if (counts[a] > 1) {
+      grid.spacing[a] = region.extent()[a] / float(counts[a] - 1);
+    } else {
+      grid.origin[a] = region.center()[a];
+    }
+  }
+  return grid;
+}
+
+float least_positive(Vec3f v) {
+  float least = renderer::kInfinity;
+  for (int a = 0; a < 3; ++a) {
+    if (v[a] > 0) least = std::min(least, v[a]);
+  }
+  return least == renderer::kInfinity ? 0 : least;
+}
+
+std::optional<Box3f> six_numbers(const std::string& text) {
+  std::array<float, 6> v{};
+  const char* at = text.data();
+  const char* end = at + text.size();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto [next, code] = std::from_chars(at, end, v[i]);
+    if (code != std::errc() || !std::isfinite(v[i])) return std::nullopt;
+    at = next;
+    if (i < 5 && (at == end || *at++ != ',')) return std::nullopt;
+  }
+  if (at != end) return std::nullopt;
+  const Vec3f a{v[0], v[1], v[2]}, b{v[3], v[4], v[5]};
+  return Box3f{min(a, b), max(a, b)};
+}
+
+}  // namespace
+
+Box3f LightGrid::region() const {
+  Box3f box{origin, origin};
+  for (int a = 0; a < 3; ++a) box.max[a] += spacing[a] * float(counts[a] - 1);
+  return box;
+}
+
+LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
+  const Box3f region = options.region.value_or(default_region(tracer.bounds()));
+  LightGrid grid = empty_grid(region, options.counts[0] > 0 ? options.counts : default_counts(region.extent()));
+  const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
+  const std::vector<Vec3f> directions = probe_directions();
+  std::vector<Probe> probes(nodes);
+  const auto position = [&](std::size_t node) {
+    const std::size_t x = node % grid.counts[0], y = node / grid.counts[0] % grid.counts[1];
+    const std::size_t z = node / grid.counts[0] / grid.counts[1];
+    return grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)};
+  };
+  renderer::parallel_for(nodes, [&](std::size_t i) { probes[i] = probe(tracer, position(i), directions); });
+
+  // Where almost everything looks like the inside of a solid, the walls are turned outwards: then their sides tell
+  // nothing.
+  const auto inside = [](const Probe& p) { return p.back_fraction >= kInsideFraction; };
+  const auto inside_count = std::size_t(std::count_if(probes.begin(), probes.end(), inside));
+  const bool sides_tell = double(inside_count) < 0.9 * double(nodes);
+  const float touching = kTouching * least_positive(grid.spacing);
+  grid.light_of_node.assign(nodes, -1);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if ((sides_tell && inside(probes[i])) || probes[i].nearest < touching) continue;
+    grid.light_of_node[i] = int(grid.positions.size());
+    grid.positions.push_back(position(i));
+  }
+  if (grid.positions.empty()) {
+    throw Error({tracer.scene().path, "light grid", "no light possible: every position lies inside a solid",
+                 "a region with free space, by --region"});
+  }
+  return grid;
+}
+
+Box3f parse_region(const renderer::Scene& scene, const std::string& text) {
+  if (const auto box = six_numbers(text)) return *box;
+  Box3f box;
+  for (const renderer::Instance& instance : scene.instances) {
+    if (instance.name != text) continue;
+    for (const Vec3f& p : scene.meshes[instance.mesh].positions)
+      box.extend(transform_point(instance.world_from_object, p));
+  }
+  if (box.empty()) {
+    throw Error({scene.path, "option --region", fmt::format("no node with a mesh is named \"{}\"", text),
+                 "a node's name, or x0,y0,z0,x1,y1,z1 in metres"});
+  }
+  return box;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,55 @@
+#pragma once
+// The illumination of chosen receivers under a unity light at any position.
+//
+//   φ(x) = V cosθ / (π d²) + N(x)
+//
+// The direct term is taken at x exactly, its visibility V traced or interpolated between grid lights; the indirect term
+// N is interpolated between grid lights. Gradients hold V fixed.
+
+#include <Eigen/Core>
+
+#include "inverse/transport/transport_cache.h"
+#include "renderer/trace/trace_illumination.h"
+
+namespace chiaro::inverse {
+
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // receivers × RGB, cd/m² per candela
+
+struct ColumnWithGradient {
+  Column value;
+  std::array<Column, 3> gradient;  // by x, y, z; per metre
+};
+
+enum class VisibilitySource : std::uint8_t { kTraced, kInterpolated };
+
+class LightResponse {
+ public:
+  // `cache` holds the columns of `receivers` only, in their order. Keeps references to tracer and cache.
+  LightResponse(const renderer::RayTracer& tracer, std::vector<renderer::SurfaceSample> receivers,
+                const TransportCache& cache);
+
+  std::size_t receiver_count() const { return receivers_.size(); }
+  const LightGrid& grid() const { return cache_.grid; }
+
+  // Positions outside the grid's region take the indirect part of the nearest point of its border.
+  Column evaluate(const Eigen::Vector3d& position, VisibilitySource visibility) const;
+  ColumnWithGradient evaluate_with_gradient(const Eigen::Vector3d& position, VisibilitySource visibility) const;
+  // The column of a grid light, as baked.
+  Column grid_column(std::size_t light) const;
+
+ private:
+  struct Weight {
+    std::size_t light;
+    double value;
+    Eigen::Vector3d gradient;
+  };
+  std::vector<Weight> interpolation_weights(const Eigen::Vector3d& position) const;
+  std::vector<double> visibility(const Eigen::Vector3d& position, VisibilitySource source,
+                                 const std::vector<Weight>& weights) const;
+
+  const renderer::RayTracer& tracer_;
+  std::vector<renderer::SurfaceSample> receivers_;
+  const TransportCache& cache_;
+};
+
+}  // namespace chiaro::inverse

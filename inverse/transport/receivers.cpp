@@ -1,0 +1,203 @@
+#include "inverse/transport/receivers.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+
+#include "inverse/transport/split_edges.h"
+#include "renderer/core/error.h"
+#include "renderer/core/fingerprint.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::Box3f;
+using renderer::Triangle;
+
+constexpr std::size_t kDefaultCount = 30000;  // receivers aimed at by default …
+constexpr double kDefaultGrowth = 1.3;        // … or this many times the scene's own vertices, where that is more
+constexpr double kMostReceivers = 3e7;
+constexpr float kNudge = 2e-5F;        // of the receivers' diagonal
+constexpr float kLongestNudge = 0.1F;  // of the way to the centroid of the face
+
+SurfaceMesh world_mesh(const renderer::Scene& scene, const renderer::Instance& instance) {
+  const renderer::Mesh& mesh = scene.meshes[instance.mesh];
+  SurfaceMesh out;
+  std::vector<std::uint32_t> used(mesh.positions.size(), ~0U);
+  for (const Triangle& triangle : mesh.triangles) {
+    Triangle t;
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t& index = used[triangle[k]];
+      if (index == ~0U) {
+        index = std::uint32_t(out.positions.size());
+        out.positions.push_back(transform_point(instance.world_from_object, mesh.positions[triangle[k]]));
+        out.normals.push_back(transform_normal(instance.world_from_object, mesh.normals[triangle[k]]));
+      }
+      t[k] = index;
+    }
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
+std::size_t vertex_count(const std::vector<SurfaceMesh>& meshes) {
+  std::size_t count = 0;
+  for (const SurfaceMesh& mesh : meshes) count += mesh.positions.size();
+  return count;
+}
+
+std::vector<SurfaceMesh> split_all(std::vector<SurfaceMesh> meshes, float max_edge) {
+  for (SurfaceMesh& mesh : meshes) split_long_edges(mesh, max_edge);
+  return meshes;
+}
+
+// The edge length that gives about as many receivers as wanted, by bisection of its logarithm.
+float default_max_edge(const std::vector<SurfaceMesh>& meshes, float diagonal) {
+  const std::size_t wanted = std::max(kDefaultCount, std::size_t(kDefaultGrowth * double(vertex_count(meshes))));
+  float shortest = 1e-4F * diagonal, longest = diagonal;
+  for (int step = 0; step < 10; ++step) {
+    const float middle = std::sqrt(shortest * longest);
+    double estimate = 0;
+    for (const SurfaceMesh& mesh : meshes) estimate += estimated_vertices_after_split(mesh, middle);
+    (estimate > double(wanted) ? shortest : longest) = middle;
+  }
+  return longest;
+}
+
+void check_count(const renderer::Scene& scene, const std::vector<SurfaceMesh>& meshes, float max_edge) {
+  double estimate = 0;
+  for (const SurfaceMesh& mesh : meshes) estimate += estimated_vertices_after_split(mesh, max_edge);
+  if (estimate > kMostReceivers) {
+    throw renderer::Error({scene.path, "receivers",
+                           fmt::format("edges of at most {} m make about {:.3g} receivers", max_edge, estimate),
+                           fmt::format("at most {:.3g}: a longer --max-edge", kMostReceivers)});
+  }
+}
+
+std::vector<std::uint32_t> largest_face_per_vertex(const Receivers& r) {
+  std::vector<std::uint32_t> face(r.size(), ~0U);
+  std::vector<float> area(r.size(), -1);
+  for (std::uint32_t t = 0; t < r.triangles.size(); ++t) {
+    const auto& [a, b, c] = r.triangles[t];
+    const float twice = length(cross(r.positions[b] - r.positions[a], r.positions[c] - r.positions[a]));
+    for (const std::uint32_t v : r.triangles[t]) {
+      if (twice > area[v]) area[v] = twice, face[v] = t;
+    }
+  }
+  return face;
+}
+
+void place_samples(Receivers& r) {
+  Box3f box;
+  for (const Vec3f& p : r.positions) box.extend(p);
+  const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
+  r.samples.resize(r.size());
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    Vec3f position = r.positions[i];
+    if (face[i] != ~0U) {
+      const auto& [a, b, c] = r.triangles[face[i]];
+      const Vec3f inward = (r.positions[a] + r.positions[b] + r.positions[c]) / 3 - position;
+      const float distance = length(inward);
+      if (distance > 0) position += std::min(kLongestNudge, kNudge * box.diagonal() / distance) * inward;
+    }
+    r.samples[i] = {position, r.normals[i]};
+  }
+}
+
+void append(Receivers& r, const std::string& name, std::span<const Vec3f> positions, std::span<const Vec3f> normals,
+            std::span<const Triangle> triangles) {
+  const auto base = std::uint32_t(r.size());
+  r.parts.push_back({name, r.size(), positions.size(), r.triangles.size(), triangles.size()});
+  r.positions.insert(r.positions.end(), positions.begin(), positions.end());
+  r.normals.insert(r.normals.end(), normals.begin(), normals.end());
+  for (const Triangle& t : triangles) r.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
+// A normal that is zero (a singular transform, a broken file) is replaced by that of a face.
+void repair_normals(Receivers& r) {
+  const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (length_squared(r.normals[i]) > 0.25F) continue;
+    Vec3f n{0, 1, 0};
+    if (face[i] != ~0U) {
+      const auto& [a, b, c] = r.triangles[face[i]];
+      const Vec3f area = cross(r.positions[b] - r.positions[a], r.positions[c] - r.positions[a]);
+      if (length_squared(area) > 0) n = normalize(area);
+    }
+    r.normals[i] = n;
+  }
+}
+
+}  // namespace
+
+Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options) {
+  std::vector<SurfaceMesh> meshes;
+  for (const renderer::Instance& instance : scene.instances) meshes.push_back(world_mesh(scene, instance));
+  if (vertex_count(meshes) == 0) {
+    throw renderer::Error({scene.path, "", "the scene has no triangles", "surfaces that light can fall on"});
+  }
+  const float max_edge =
+      options.max_edge > 0 ? options.max_edge : default_max_edge(meshes, renderer::bounds(scene).diagonal());
+  check_count(scene, meshes, max_edge);
+  meshes = split_all(std::move(meshes), max_edge);
+  Receivers receivers;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    append(receivers, scene.instances[i].name, meshes[i].positions, meshes[i].normals, meshes[i].triangles);
+  }
+  repair_normals(receivers);
+  place_samples(receivers);
+  return receivers;
+}
+
+Receivers receivers_from_mesh(const renderer::VertexMesh& mesh) {
+  Receivers receivers;
+  for (const renderer::VertexMeshPart& part : mesh.parts) {
+    append(receivers, part.name, part.positions, part.normals, part.triangles);
+  }
+  repair_normals(receivers);
+  place_samples(receivers);
+  return receivers;
+}
+
+renderer::VertexMesh mesh_from_receivers(const Receivers& receivers) {
+  renderer::VertexMesh mesh;
+  for (const Receivers::Part& part : receivers.parts) {
+    renderer::VertexMeshPart out;
+    out.name = part.name;
+    const auto first = receivers.positions.begin() + std::ptrdiff_t(part.first_receiver);
+    const auto first_normal = receivers.normals.begin() + std::ptrdiff_t(part.first_receiver);
+    out.positions.assign(first, first + std::ptrdiff_t(part.receiver_count));
+    out.normals.assign(first_normal, first_normal + std::ptrdiff_t(part.receiver_count));
+    const auto base = std::uint32_t(part.first_receiver);
+    for (std::size_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
+      const Triangle& triangle = receivers.triangles[t];
+      out.triangles.push_back({triangle[0] - base, triangle[1] - base, triangle[2] - base});
+    }
+    mesh.parts.push_back(std::move(out));
+  }
+  return mesh;
+}
+
+std::string fingerprint(const Receivers& receivers) {
+  renderer::Fingerprint f;
+  f.add_all(std::span<const Vec3f>(receivers.positions));
+  f.add_all(std::span<const Vec3f>(receivers.normals));
+  f.add_all(std::span<const Triangle>(receivers.triangles));
+  return f.text();
+}
+
+double fraction_on_surface(const renderer::RayTracer& tracer, const Receivers& receivers) {
+  constexpr std::size_t kMostProbes = 2000;
+  const float reach = 1e-3F * tracer.bounds().diagonal();
+  const std::size_t stride = std::max<std::size_t>(1, receivers.size() / kMostProbes);
+  std::size_t probes = 0, found = 0;
+  for (std::size_t i = 0; i < receivers.size(); i += stride, ++probes) {
+    const renderer::SurfaceSample& s = receivers.samples[i];
+    const renderer::Ray ray{s.position + reach * s.normal, -s.normal, 0, 2 * reach, std::uint32_t(i)};
+    found += tracer.intersect(ray).has_value() ? 1 : 0;
+  }
+  return probes > 0 ? double(found) / double(probes) : 0;
+}
+
+}  // namespace chiaro::inverse

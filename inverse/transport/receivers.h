@@ -1,0 +1,49 @@
+#pragma once
+// The surface points on which illumination lives.
+
+#include <string>
+#include <vector>
+
+#include "renderer/io/vertex_mesh_file.h"
+#include "renderer/scene/scene.h"
+#include "renderer/trace/trace_illumination.h"
+
+namespace chiaro::inverse {
+
+using renderer::Vec3f;
+
+// Vertices of the scene's surface after long edges are split, instances flattened, in world space.
+struct Receivers {
+  struct Part {  // one per instance
+    std::string name;
+    std::size_t first_receiver = 0, receiver_count = 0;
+    std::size_t first_triangle = 0, triangle_count = 0;
+  };
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;                 // unit
+  std::vector<renderer::Triangle> triangles;  // over positions
+  std::vector<Part> parts;
+  // Where illumination is sampled: just inside one of the vertex's faces, so that receivers on edges, in corners and
+  // under furniture neither leak nor blacken.
+  std::vector<renderer::SurfaceSample> samples;
+
+  std::size_t size() const { return positions.size(); }
+};
+
+struct ReceiverOptions {
+  float max_edge = 0;  // metres; 0: from the scene's size, for 20 000 to 50 000 receivers
+};
+
+// Never fewer than the scene's own vertices that triangles use. Error for a scene without triangles.
+Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options);
+
+// The vertices of a mesh file, whoever wrote it.
+Receivers receivers_from_mesh(const renderer::VertexMesh& mesh);
+renderer::VertexMesh mesh_from_receivers(const Receivers& receivers);
+
+std::string fingerprint(const Receivers& receivers);
+
+// Fraction of receivers (of at most 2000 looked at) that lie on the scene's surface. A target of another scene has few.
+double fraction_on_surface(const renderer::RayTracer& tracer, const Receivers& receivers);
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,56 @@
+#include "inverse/transport/sparse_transport.h"
+
+#include <algorithm>
+
+// Wider vector units where the CPU has them, chosen at run time. Sanitizers cannot instrument the resolvers.
+#if defined(__x86_64__) && !defined(CHIARO_SANITIZED)
+#define CHIARO_DISPATCH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define CHIARO_DISPATCH
+#endif
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::Vec3f;
+
+CHIARO_DISPATCH void multiply_row(const SparseTransport::Entry* entry, const SparseTransport::Entry* end,
+                                  const LightBlock* in, LightBlock* result) {
+  LightBlock sum;
+  for (; entry != end; ++entry) {
+    const LightBlock& x = in[entry->column];
+    for (int l = 0; l < kLightBlock; ++l) sum.channel[0][l] += entry->weight.x * x.channel[0][l];
+    for (int l = 0; l < kLightBlock; ++l) sum.channel[1][l] += entry->weight.y * x.channel[1][l];
+    for (int l = 0; l < kLightBlock; ++l) sum.channel[2][l] += entry->weight.z * x.channel[2][l];
+  }
+  *result = sum;
+}
+
+}  // namespace
+
+SparseTransport SparseTransport::from_rows(std::vector<std::vector<Entry>>&& rows) {
+  SparseTransport matrix;
+  for (std::vector<Entry>& row : rows) {
+    std::stable_sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    const std::size_t first = matrix.entries_.size();
+    for (const Entry& entry : row) {
+      if (matrix.entries_.size() > first && matrix.entries_.back().column == entry.column) {
+        matrix.entries_.back().weight += entry.weight;
+      } else {
+        matrix.entries_.push_back(entry);
+      }
+    }
+    matrix.row_start_.push_back(matrix.entries_.size());
+    std::vector<Entry>().swap(row);
+  }
+  return matrix;
+}
+
+void multiply(const SparseTransport& matrix, std::span<const LightBlock> in, std::span<LightBlock> result) {
+  for (std::size_t i = 0; i < matrix.row_count(); ++i) {
+    const auto row = matrix.row(i);
+    multiply_row(row.data(), row.data() + row.size(), in.data(), &result[i]);
+  }
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,46 @@
+#pragma once
+// Sparse matrices of RGB weights, and their product with blocks of light columns.
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace chiaro::inverse {
+
+// Compressed rows.
+class SparseTransport {
+ public:
+  struct Entry {
+    std::uint32_t column;
+    renderer::Vec3f weight;
+  };
+
+  // Rows in order; entries of one row with the same column are added up.
+  static SparseTransport from_rows(std::vector<std::vector<Entry>>&& rows);
+
+  std::size_t row_count() const { return row_start_.size() - 1; }
+  std::span<const Entry> row(std::size_t i) const {
+    return {entries_.data() + row_start_[i], entries_.data() + row_start_[i + 1]};
+  }
+  std::size_t entry_count() const { return entries_.size(); }
+
+ private:
+  std::vector<std::size_t> row_start_{0};
+  std::vector<Entry> entries_;
+};
+
+// Lights are handled this many at a time.
+inline constexpr int kLightBlock = 16;
+
+// Illumination of one point by a block of lights, per channel.
+struct alignas(64) LightBlock {
+  float channel[3][kLightBlock] = {};
+};
+
+// result[i] = Σ_k row(i)[k].weight · in[column], per channel and light.
+void multiply(const SparseTransport& matrix, std::span<const LightBlock> in, std::span<LightBlock> result);
+
+}  // namespace chiaro::inverse

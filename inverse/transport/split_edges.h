@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "renderer/scene/scene.h"
+
+namespace chiaro::inverse {
+
+struct SurfaceMesh {
+  std::vector<renderer::Vec3f> positions;
+  std::vector<renderer::Vec3f> normals;
+  std::vector<renderer::Triangle> triangles;
+};
+
+// Splits edges longer than max_edge (metres) at their middle until none is left. An edge shared by two triangles is
+// split for both, so that the mesh stays whole. Old vertices keep their numbers; new normals are interpolated.
+void split_long_edges(SurfaceMesh& mesh, float max_edge);
+
+// About how many vertices split_long_edges would leave.
+double estimated_vertices_after_split(const SurfaceMesh& mesh, float max_edge);
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,74 @@
+#include "renderer/core/atomic_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "renderer/core/error.h"
+
+namespace chiaro::renderer {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, int code) {
+  throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(code)), ""});
+}
+
+void sync(const std::filesystem::path& path, const std::filesystem::path& named) {
+  const int file = ::open(path.c_str(), O_RDONLY);
+  if (file < 0) fail(named, errno);
+  const int result = ::fsync(file);
+  const int code = errno;
+  ::close(file);
+  if (result != 0 && code != EINVAL) fail(named, code);
+}
+
+}  // namespace
+
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder)) {
+    throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
+  }
+  if (std::filesystem::is_directory(path)) throw Error({path.string(), "", "is a folder", "the name of a file"});
+  const std::filesystem::path aside =
+      folder / fmt::format(".{}.{}.part{}", path.stem().string(), ::getpid(), path.extension().string());
+  try {
+    write(aside);
+    sync(aside, path);
+    std::error_code renamed;
+    std::filesystem::rename(aside, path, renamed);
+    if (renamed) fail(path, renamed.value());
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(aside, ignored);
+    throw;
+  }
+  sync(folder, path);
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+  write_atomically(path, [&](const std::filesystem::path& aside) {
+    std::ofstream stream(aside, std::ios::binary);
+    stream.write(bytes.data(), std::streamsize(bytes.size()));
+    stream.close();
+    if (!stream) fail(path, errno);
+  });
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) throw Error({path.string(), "", "no such file", ""});
+  if (std::filesystem::is_directory(path)) throw Error({path.string(), "", "is a folder", "a file"});
+  std::ifstream stream(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream.good() && !stream.eof()) throw Error({path.string(), "", "cannot be read", ""});
+  return bytes;
+}
+
+}  // namespace chiaro::renderer

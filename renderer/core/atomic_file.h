@@ -1,0 +1,22 @@
+#pragma once
+// Outputs appear whole or not at all.
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace chiaro::renderer {
+
+// Calls write(path) with a name beside `path` (same folder, same extension), syncs what it wrote and renames it to
+// `path`. If write throws, or the write fails, nothing is left behind and what was at `path` before stays.
+// Missing parent folders are an Error.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write);
+
+// The same for bytes in memory.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+// The bytes of a file; Error where it is missing, a folder, or unreadable.
+std::string read_file(const std::filesystem::path& path);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,79 @@
+#pragma once
+// Sample points that are a function of (seed, stream, index, dimension) alone.
+// Source: Burley, Practical Hash-based Owen Scrambling, 2020 (shuffled, scrambled Sobol' pairs, padded over
+// dimensions); hash constants for the Laine–Karras permutation after Vegdahl, 2021.
+
+#include <cstdint>
+
+#include "renderer/core/vec.h"
+
+namespace chiaro::renderer {
+
+inline std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t h = a ^ (b * 0x9e3779b9U + 0x7f4a7c15U + (a << 6) + (a >> 2));
+  h = (h ^ (h >> 16)) * 0x7feb352dU;  // lowbias32 of Wellons, Prospecting for Hash Functions, 2018
+  h = (h ^ (h >> 15)) * 0x846ca68bU;
+  return h ^ (h >> 16);
+}
+
+inline std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
+  x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fU) | ((x & 0x0f0f0f0fU) << 4);
+  return __builtin_bswap32(x);
+}
+
+inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  x = reverse_bits(x);
+  x ^= x * 0x3d20adeaU;
+  x += seed;
+  x *= (seed >> 16) | 1U;
+  x ^= x * 0x05526c56U;
+  x ^= x * 0x53a22864U;
+  return reverse_bits(x);
+}
+
+// In [0, 1).
+inline float unit_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24F; }
+
+// The points of one pixel's or receiver's sample `index`, dimension by dimension.
+class Sampler {
+ public:
+  Sampler(std::uint64_t seed, std::uint32_t stream, std::uint32_t index)
+      : key_(hash_combine(hash_combine(std::uint32_t(seed), std::uint32_t(seed >> 32)), stream)), index_(index) {}
+
+  float next_1d() {
+    const std::uint32_t key = next_key();
+    return unit_float(owen_scramble(reverse_bits(shuffled_index(key)), hash_combine(key, 1)));
+  }
+
+  Vec2f next_2d() {
+    const std::uint32_t key = next_key();
+    const std::uint32_t i = shuffled_index(key);
+    return {unit_float(owen_scramble(reverse_bits(i), hash_combine(key, 1))),
+            unit_float(owen_scramble(sobol_second_dimension(i), hash_combine(key, 2)))};
+  }
+
+  std::uint32_t next_bits() { return hash_combine(next_key(), index_); }
+
+ private:
+  std::uint32_t next_key() { return hash_combine(key_, ++dimension_); }
+  std::uint32_t shuffled_index(std::uint32_t key) const { return owen_scramble(index_, key); }
+  static std::uint32_t sobol_second_dimension(std::uint32_t i) {
+    std::uint32_t x = 0;
+    for (std::uint32_t v = 1U << 31; i != 0; i >>= 1, v ^= v >> 1) {
+      if (i & 1U) x ^= v;
+    }
+    return x;
+  }
+
+  std::uint32_t key_, index_, dimension_ = 0;
+};
+
+// Cosine-weighted direction around +Z (Malley's method); pdf = z / π.
+inline Vec3f sample_cosine_hemisphere(Vec2f u) {
+  const float radius = std::sqrt(u.x), angle = 2 * kPi * u.y;
+  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0F, 1 - u.x))};
+}
+
+}  // namespace chiaro::renderer

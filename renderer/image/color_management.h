@@ -1,0 +1,37 @@
+#pragma once
+// Colour management, through OpenColorIO.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/image/image.h"
+
+namespace chiaro::renderer {
+
+struct ViewOptions {
+  std::string display;  // empty: the config's default
+  std::string view;     // empty: the display's default
+  float exposure = 0;   // EV, a gain of 2^exposure in scene-linear before the view
+};
+
+// The config that is used: `explicit_config` if given, else $OCIO if set, else color/config.ocio of our own data folder
+// ($CHIARO_DATA, or found relative to the executable). Error where there is none.
+std::filesystem::path find_ocio_config(const std::optional<std::filesystem::path>& explicit_config);
+
+// The first three channels of `image` (scene-linear Rec.709) as the display and view show them, "R","G","B", 0 to 1.
+// Error, naming the choices, where the config has no such display or view.
+Image apply_display_view(const Image& image, const std::filesystem::path& config, const ViewOptions& options);
+
+// From scene-linear Rec.709 to a named space (or role) of the config, in place, on the first three channels and on
+// every layer's `.R,.G,.B`-triple named in `color_layers` (prefixes, "" = the beauty).
+void convert_from_rec709(Image& image, const std::filesystem::path& config, const std::string& space,
+                         const std::vector<std::string>& color_layers);
+
+// CIE xy chromaticities (red x, y, green, blue, white) of a scene-linear space of the config; absent where they cannot
+// be told.
+std::optional<std::array<float, 8>> chromaticities_of(const std::filesystem::path& config, const std::string& space);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <memory>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "renderer/core/error.h"
+#include "renderer/image/encoded_image.h"
+#include "renderer/image/image_file.h"
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
+
+// The name of a file of the format that the bytes begin like; empty: none that textures come in.
+std::string file_name_for(std::string_view encoded) {
+  const auto begins = [&](std::string_view magic, std::size_t at = 0) {
+    return encoded.size() >= at + magic.size() && encoded.substr(at, magic.size()) == magic;
+  };
+  if (begins("\x89PNG\r\n\x1a\n")) return "texture.png";
+  if (begins("\xff\xd8\xff")) return "texture.jpg";
+  if (begins("RIFF") && begins("WEBP", 8)) return "texture.webp";
+  if (begins("GIF8")) return "texture.gif";
+  if (begins("BM")) return "texture.bmp";
+  if (begins("DDS ")) return "texture.dds";
+  return "";
+}
+
+[[noreturn]] void fail(const std::string& label, const std::string& problem) {
+  throw Error({label, "", problem, "a PNG, JPEG or WebP image"});
+}
+
+std::string reason(const std::string& text) {
+  const std::string line = text.substr(0, text.find('\n'));
+  return line.empty() ? "the decoder gives no reason" : line;
+}
+
+std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, const std::string& label) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1 ||
+      std::int64_t(spec.width) * spec.height > kMaxTexels / std::max(1, spec.nchannels / 4)) {
+    fail(label, fmt::format("has {} x {} pixels with {} channels", spec.width, spec.height, spec.nchannels));
+  }
+  std::vector<std::uint8_t> texels(std::size_t(spec.width) * spec.height * spec.nchannels);
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data())) {
+    fail(label, fmt::format("cannot be decoded: {}", reason(input.geterror())));
+  }
+  return texels;
+}
+
+// One channel is grey, two are grey and alpha, three are RGB.
+std::vector<std::uint8_t> rgba_of(const std::vector<std::uint8_t>& texels, int channels) {
+  const std::size_t count = texels.size() / channels;
+  std::vector<std::uint8_t> rgba(4 * count);
+  const int g = channels >= 3 ? 1 : 0, b = channels >= 3 ? 2 : 0, a = channels == 2 ? 1 : 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* texel = &texels[i * channels];
+    const std::uint8_t values[4] = {texel[0], texel[g], texel[b], a < channels ? texel[a] : std::uint8_t{255}};
+    std::copy(values, values + 4, &rgba[4 * i]);
+  }
+  return rgba;
+}
+
+}  // namespace
+
+Texture decode_texture(std::string_view encoded, const std::string& label) {
+  const std::string name = file_name_for(encoded);
+  if (name.empty()) fail(label, "is in a format that is not read here");
+  if (const auto damage = find_damage(encoded)) fail(label, *damage);
+  OIIO::Filesystem::IOMemReader reader(const_cast<char*>(encoded.data()), encoded.size());
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;
+  // Some readers take the proxy from their configuration only.
+  OIIO::Filesystem::IOProxy* proxy = &reader;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const auto input = OIIO::ImageInput::open(name, &config, proxy);
+  if (!input) fail(label, fmt::format("cannot be decoded: {}", reason(OIIO::geterror())));
+  const std::vector<std::uint8_t> texels = read_texels(*input, label);
+  const OIIO::ImageSpec& spec = input->spec();
+  Texture texture;
+  texture.name = label;
+  texture.width = spec.width;
+  texture.height = spec.height;
+  texture.rgba = spec.nchannels == 4 ? texels : rgba_of(texels, spec.nchannels);
+  return texture;
+}
+
+}  // namespace chiaro::renderer

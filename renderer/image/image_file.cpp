@@ -1,0 +1,200 @@
+#include "renderer/image/image_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <limits>
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "renderer/image/encoded_image.h"
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr float kMaxHalf = 65504.0F;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 31;
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// OpenImageIO renames some of OpenEXR's attributes on reading; these are the names as the file has them.
+std::string exr_name(const std::string& name) {
+  static const std::pair<const char*, const char*> kRenamed[] = {{"worldtocamera", "worldToCamera"},
+                                                                 {"worldtoscreen", "worldToNDC"},
+                                                                 {"Copyright", "owner"},
+                                                                 {"DateTime", "capDate"},
+                                                                 {"ImageDescription", "comments"},
+                                                                 {"ExposureTime", "expTime"},
+                                                                 {"FNumber", "aperture"},
+                                                                 {"openexr:whiteLuminance", "whiteLuminance"}};
+  for (const auto& [renamed, original] : kRenamed) {
+    if (name == renamed) return original;
+  }
+  return name;
+}
+
+template <std::size_t N>
+std::array<float, N> floats_of(const OIIO::ParamValue& value) {
+  std::array<float, N> floats;
+  std::memcpy(floats.data(), value.data(), sizeof floats);
+  return floats;
+}
+
+void append_attribute(Attributes& attributes, const OIIO::ParamValue& value, bool exr) {
+  if (value.name().string().starts_with("oiio:")) return;
+  const OIIO::TypeDesc type = value.type();
+  const std::string name = exr ? exr_name(value.name().string()) : value.name().string();
+  const int floats = type.basetype == OIIO::TypeDesc::FLOAT ? int(type.numelements()) * type.aggregate : 0;
+  if (type == OIIO::TypeInt) attributes.emplace_back(name, value.get_int());
+  if (type == OIIO::TypeString) attributes.emplace_back(name, value.get_string());
+  if (floats == 1) attributes.emplace_back(name, value.get_float());
+  if (floats == 2) attributes.emplace_back(name, floats_of<2>(value));
+  if (floats == 3) attributes.emplace_back(name, floats_of<3>(value));
+  if (floats == 8) attributes.emplace_back(name, floats_of<8>(value));
+  if (floats == 16) attributes.emplace_back(name, floats_of<16>(value));
+}
+
+bool has_extension(const std::filesystem::path& path, std::initializer_list<std::string_view> extensions) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw Error({path.string(), "", "no such file", ""});
+  if (!std::filesystem::is_regular_file(path, ignored)) throw Error({path.string(), "", "is not a file", "an image"});
+  if (has_extension(path, {".png", ".jpg", ".jpeg"})) {
+    if (const auto damage = find_damage(read_file(path))) throw Error({path.string(), "", *damage, "a whole image"});
+  }
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;
+  auto input = OIIO::ImageInput::open(path.string(), &config);
+  if (!input) {
+    const std::string reason = first_line(OIIO::geterror());
+    throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), ""});
+  }
+  return input;
+}
+
+void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
+  const bool sensible = spec.width > 0 && spec.height > 0 && spec.nchannels > 0 && spec.depth <= 1 &&
+                        std::int64_t(spec.width) * spec.height <= kMaxPixels / std::max(1, spec.nchannels / 4);
+  if (sensible && !spec.deep) return;
+  throw Error({file, "header",
+               fmt::format("{} x {} x {} pixels with {} channels{}", spec.width, spec.height, spec.depth,
+                           spec.nchannels, spec.deep ? ", deep" : ""),
+               "a flat image of a sensible size"});
+}
+
+ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& path) {
+  const OIIO::ImageSpec& spec = input.spec();
+  check_size(spec, path.string());
+  ImageFile file;
+  file.image = Image{spec.width, spec.height, spec.channelnames, {}};
+  const bool exr = std::strcmp(input.format_name(), "openexr") == 0;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) append_attribute(file.attributes, value, exr);
+  return file;
+}
+
+struct SetAttribute {
+  OIIO::ImageSpec& spec;
+  std::string name;
+  void operator()(int value) const { spec.attribute(name, value); }
+  void operator()(float value) const { spec.attribute(name, value); }
+  void operator()(const std::string& value) const { spec.attribute(name, value); }
+  void operator()(const std::array<float, 2>& v) const { set({OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::VEC2}, v.data()); }
+  void operator()(const std::array<float, 3>& v) const { set({OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::VEC3}, v.data()); }
+  void operator()(const std::array<float, 8>& v) const { set({OIIO::TypeDesc::FLOAT, 8}, v.data()); }
+  void operator()(const std::array<float, 16>& v) const { set(OIIO::TypeMatrix44, v.data()); }
+  void set(OIIO::TypeDesc type, const float* values) const { spec.attribute(name, type, values); }
+};
+
+OIIO::TypeDesc type_desc(PixelType type) {
+  return type == PixelType::kUint8 ? OIIO::TypeUInt8 : type == PixelType::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat;
+}
+
+OIIO::ImageSpec spec_of(const Image& image, PixelType type, const Attributes& attributes) {
+  OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), type_desc(type));
+  spec.channelnames = image.channel_names;
+  spec.alpha_channel = image.find_channel("A");
+  spec["oiio:UnassociatedAlpha"] = 1;
+  spec["compression"] = "zip";
+  // Without a date OpenImageIO writes the current one, and the same frame would be another file each time. It finds
+  // this, and does not write it, as its type is wrong.
+  spec.attribute("DateTime", 0);
+  for (const auto& [name, value] : attributes) {
+    std::visit(SetAttribute{spec, name == "capDate" ? "DateTime" : name}, value);
+  }
+  return spec;
+}
+
+// What halves cannot hold would become infinite.
+std::vector<float> clamped_to_half(const std::vector<float>& pixels) {
+  std::vector<float> clamped(pixels.size());
+  std::transform(pixels.begin(), pixels.end(), clamped.begin(),
+                 [](float v) { return std::isfinite(v) ? std::clamp(v, -kMaxHalf, kMaxHalf) : v; });
+  return clamped;
+}
+
+void check_channels(const Image& image, const std::filesystem::path& path, const OIIO::ImageOutput& output) {
+  CHIARO_CHECK(image.pixels.size() == std::size_t(image.width) * image.height * image.channel_names.size());
+  if (image.width <= 0 || image.height <= 0 || image.channel_names.empty()) {
+    throw Error({path.string(), "", "an image without pixels cannot be written", ""});
+  }
+  if (image.channel_count() > 4 && !output.supports("nchannels")) {
+    throw Error({path.string(), "", fmt::format("{} channels do not fit into this kind of file", image.channel_count()),
+                 "at most 4, or an .exr file"});
+  }
+}
+
+void write(const Image& image, const std::filesystem::path& aside, const OIIO::ImageSpec& spec,
+           OIIO::ImageOutput& output) {
+  const bool half = spec.format == OIIO::TypeHalf;
+  const std::vector<float> clamped = half ? clamped_to_half(image.pixels) : std::vector<float>{};
+  const float* pixels = half ? clamped.data() : image.pixels.data();
+  const bool written = output.open(aside.string(), spec) && output.write_image(OIIO::TypeFloat, pixels);
+  if (!output.close() || !written) {
+    throw Error({aside.string(), "", fmt::format("cannot be written: {}", first_line(output.geterror())), ""});
+  }
+}
+
+}  // namespace
+
+ImageFile load_image_header(const std::filesystem::path& path) { return header_of(*open(path), path); }
+
+ImageFile load_image(const std::filesystem::path& path) {
+  const auto input = open(path);
+  ImageFile file = header_of(*input, path);
+  Image& image = file.image;
+  image = make_image(image.width, image.height, std::move(image.channel_names));
+  if (!input->read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) {
+    throw Error(
+        {path.string(), "pixels", fmt::format("cannot be read: {}", first_line(input->geterror())), "a whole file"});
+  }
+  return file;
+}
+
+void save_image(const Image& image, const std::filesystem::path& path, PixelType type, const Attributes& attributes) {
+  const auto output = OIIO::ImageOutput::create(path.string());
+  if (!output) {
+    OIIO::geterror();
+    throw Error({path.string(), "", "no image format has this extension", ".exr, .png, .tif, .jpg …"});
+  }
+  check_channels(image, path, *output);
+  const OIIO::ImageSpec spec = spec_of(image, type, attributes);
+  write_atomically(path, [&](const std::filesystem::path& aside) {
+    try {
+      write(image, aside, spec, *output);
+    } catch (const Error& error) {
+      throw Error({path.string(), "", error.parts().problem, ""});
+    }
+  });
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,44 @@
+#pragma once
+// Image files, through OpenImageIO.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "renderer/image/image.h"
+#include "renderer/image/texture.h"
+
+namespace chiaro::renderer {
+
+// An attribute of an EXR header; the matrix is written as m44f, row-vector convention of OpenEXR (the caller
+// transposes).
+using AttributeValue = std::variant<int, float, std::string, std::array<float, 2>, std::array<float, 3>,
+                                    std::array<float, 8> /* chromaticities */, std::array<float, 16>>;
+using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
+
+struct ImageFile {
+  Image image;
+  Attributes attributes;  // those of the kinds above
+};
+
+// Any file that OpenImageIO reads, values as stored (8-bit as 0 to 1, no colour conversion). Error where unreadable,
+// truncated, or not an image.
+ImageFile load_image(const std::filesystem::path& path);
+// Header only: size, channel names and attributes; pixels stay empty.
+ImageFile load_image_header(const std::filesystem::path& path);
+
+enum class PixelType : std::uint8_t { kUint8, kHalf, kFloat };
+
+// By the extension of `path` (.exr, .png, .tif, .jpg …), whole or not at all (atomic_file.h). EXR: ZIP compressed.
+void save_image(const Image& image, const std::filesystem::path& path, PixelType type,
+                const Attributes& attributes = {});
+
+// Decodes an encoded texture (PNG, JPEG, WebP …) in memory to RGBA8; `label` names it in errors.
+Texture decode_texture(std::string_view encoded, const std::string& label);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,28 @@
+#pragma once
+// The outermost layer of a glTF file: text, or the chunks of a GLB.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace chiaro::renderer {
+
+struct GltfContainer {
+  std::string json;
+  std::optional<std::string> binary;                                // the BIN chunk of a GLB
+  std::vector<std::pair<std::uint32_t, std::string>> other_chunks;  // type and bytes, in the order of the file
+};
+
+// Error for a file that is neither, glTF 1.0, or truncated.
+GltfContainer read_gltf_container(const std::filesystem::path& path);
+
+bool is_glb(std::string_view bytes);
+
+// The bytes of a GLB. Error, naming `path`, for more than GLB's 4 GiB.
+std::string make_glb(const GltfContainer& container, const std::filesystem::path& path);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,42 @@
+#pragma once
+// A glTF file in memory: its structure as tinygltf parsed it, its buffers, and where its images are.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/io/gltf_json.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace chiaro::renderer {
+
+struct GltfDocument {
+  std::filesystem::path path;
+  std::shared_ptr<const tinygltf::Model> model;  // without buffers, images, animations, skins: see `json`
+  GltfJson json;
+  std::string binary;                // the BIN chunk of a GLB
+  std::vector<std::string> buffers;  // bytes; empty before load_buffers
+  std::vector<std::string> warnings;
+};
+
+// The structure alone. Error as check_gltf_json, and for an extension under extensionsRequired that is not read here.
+GltfDocument open_gltf(const std::filesystem::path& path);
+
+// Brings in the buffers. Error for missing files and for buffers shorter than they say.
+void load_buffers(GltfDocument& document);
+
+// The bytes of a buffer view. Error where it reaches beyond its buffer.
+std::string_view buffer_view_bytes(const GltfDocument& document, int buffer_view);
+
+// The encoded bytes of an image.
+std::string image_bytes(const GltfDocument& document, int image);
+
+[[noreturn]] void fail(const GltfDocument& document, const std::string& place, const std::string& problem,
+                       const std::string& expected = "");
+
+}  // namespace chiaro::renderer

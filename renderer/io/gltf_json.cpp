@@ -1,0 +1,236 @@
+#include "renderer/io/gltf_json.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "renderer/core/error.h"
+#include "renderer/io/gltf_json_rules.h"
+
+namespace chiaro::renderer {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMaxDepth = 256;
+
+[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& problem,
+                       const std::string& expected = "") {
+  throw Error({file, place, problem, expected});
+}
+
+json parse(const std::string& text, const std::string& file) {
+  const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
+    if (depth > kMaxDepth) fail(file, "JSON", "is nested too deeply", fmt::format("at most {} levels", kMaxDepth));
+    return true;
+  };
+  try {
+    return json::parse(text, limit_depth);
+  } catch (const json::parse_error& error) {
+    fail(file, "JSON", fmt::format("syntax error at byte {}", error.byte), "a glTF 2.0 scene");
+  } catch (const json::exception&) {
+    fail(file, "JSON", "holds a number that is out of range");
+  }
+}
+
+// One walk along a rule's path; the place is kept for messages.
+class RuleCheck {
+ public:
+  RuleCheck(json& root, const JsonRule& rule, const std::string& file) : root_(root), rule_(rule), file_(file) {}
+
+  void run() { walk(root_, rule_.path, ""); }
+
+ private:
+  void walk(json& value, std::string_view path, const std::string& place) {
+    const std::size_t dot = path.find('.');
+    const std::string_view key = path.substr(0, dot);
+    const std::string_view rest = dot == std::string_view::npos ? std::string_view{} : path.substr(dot + 1);
+    const bool last = rest.empty();
+    if (key == "[]") {
+      for (std::size_t i = 0; i < value.size(); ++i) step(value[i], rest, last, fmt::format("{}[{}]", place, i));
+    } else if (key == "*") {
+      for (auto& [name, member] : value.items()) step(member, rest, last, place + "." + name);
+    } else {
+      walk_member(value, key, rest, place);
+    }
+  }
+
+  void walk_member(json& value, std::string_view key, std::string_view rest, const std::string& place) {
+    const auto member = value.find(key);
+    const std::string inner = place.empty() ? std::string(key) : fmt::format("{}.{}", place, key);
+    if (member != value.end()) return step(*member, rest, rest.empty(), inner);
+    if (rest.empty() && rule_.required) fail(file_, inner, "is missing");
+  }
+
+  void step(json& value, std::string_view rest, bool last, const std::string& place) {
+    if (last) {
+      check(value, place);
+    } else {
+      walk(value, rest, place);
+    }
+  }
+
+  void check(json& value, const std::string& place) {
+    switch (rule_.kind) {
+      case JsonKind::kObject:
+        return require(value.is_object(), place, "an object");
+      case JsonKind::kArray:
+        return require(value.is_array(), place, "an array");
+      case JsonKind::kString:
+        return require(value.is_string(), place, "a string");
+      case JsonKind::kBoolean:
+        return require(value.is_boolean(), place, "true or false");
+      case JsonKind::kNumber:
+        return check_number(value, place);
+      case JsonKind::kNumbers:
+        return check_numbers(value, place);
+      case JsonKind::kCount:
+        return check_count(value, place);
+      case JsonKind::kIndex:
+        return check_index(value, place);
+      case JsonKind::kIndices:
+        return check_indices(value, place);
+    }
+  }
+
+  void require(bool right, const std::string& place, const char* expected) const {
+    if (!right) fail(file_, place, "is of the wrong type", expected);
+  }
+
+  void check_number(const json& value, const std::string& place) const {
+    require(value.is_number(), place, "a number");
+    const double number = value.get<double>();
+    if (number >= rule_.low && number <= rule_.high) return;
+    fail(file_, place, fmt::format("is {}", number), fmt::format("{:g} to {:g}", rule_.low, rule_.high));
+  }
+
+  void check_numbers(const json& value, const std::string& place) const {
+    if (!value.is_array() || int(value.size()) != rule_.size) {
+      fail(file_, place, "is of the wrong type", fmt::format("an array of {} numbers", rule_.size));
+    }
+    for (const json& element : value) check_number(element, place);
+  }
+
+  // Whole numbers written as 3.0 become 3.
+  void check_count(json& value, const std::string& place) const {
+    if (value.is_number_float() && value.get<double>() >= 0 && value.get<double>() < 9e15 &&
+        std::floor(value.get<double>()) == value.get<double>()) {
+      value = std::uint64_t(value.get<double>());
+    }
+    require(value.is_number_unsigned(), place, "a whole number, not negative");
+    if (double(value.get<std::uint64_t>()) > rule_.high) {
+      fail(file_, place, fmt::format("is {}", value.get<std::uint64_t>()), fmt::format("at most {:g}", rule_.high));
+    }
+  }
+
+  std::size_t target_size() const {
+    const json* array = &root_;
+    for (std::string_view path = rule_.target; !path.empty();) {
+      const std::size_t dot = path.find('.');
+      const auto member = array->find(path.substr(0, dot));
+      if (member == array->end()) return 0;
+      array = &*member;
+      path = dot == std::string_view::npos ? std::string_view{} : path.substr(dot + 1);
+    }
+    return array->is_array() ? array->size() : 0;
+  }
+
+  void check_index(json& value, const std::string& place) {
+    check_count(value, place);
+    if (!size_) size_ = target_size();
+    if (value.get<std::uint64_t>() < *size_) return;
+    fail(file_, place, fmt::format("{} is out of range", value.get<std::uint64_t>()),
+         fmt::format("an index into {}, which has {}", rule_.target, *size_));
+  }
+
+  void check_indices(json& value, const std::string& place) {
+    require(value.is_array(), place, "an array of indices");
+    for (std::size_t i = 0; i < value.size(); ++i) check_index(value[i], fmt::format("{}[{}]", place, i));
+  }
+
+  json& root_;
+  const JsonRule& rule_;
+  const std::string& file_;
+  std::optional<std::size_t> size_;
+};
+
+void check_version(const json& root, const std::string& file) {
+  const json& asset = root["asset"];
+  const bool has_minimum = asset.contains("minVersion");
+  const std::string version = (has_minimum ? asset["minVersion"] : asset["version"]).get<std::string>();
+  const bool readable = has_minimum ? version == "2.0" : version.starts_with("2.");
+  if (!readable) fail(file, "asset.version", fmt::format("is \"{}\"", version.substr(0, 20)), "2.0");
+}
+
+std::optional<std::string> string_member(const json& object, const char* key) {
+  const auto member = object.find(key);
+  return member == object.end() ? std::nullopt : std::optional(member->get<std::string>());
+}
+
+std::vector<GltfBufferSource> take_buffers(json& root) {
+  std::vector<GltfBufferSource> buffers;
+  for (const json& buffer : root.value("buffers", json::array())) {
+    buffers.push_back({string_member(buffer, "uri"), buffer["byteLength"].get<std::size_t>()});
+  }
+  root.erase("buffers");
+  return buffers;
+}
+
+std::vector<GltfImageSource> take_images(json& root) {
+  std::vector<GltfImageSource> images;
+  for (const json& image : root.value("images", json::array())) {
+    images.push_back({image.value("name", ""), string_member(image, "uri"), image.value("bufferView", -1)});
+  }
+  root.erase("images");
+  return images;
+}
+
+bool take(json& root, const char* key) {
+  const auto member = root.find(key);
+  const bool has_any = member != root.end() && !member->empty();
+  root.erase(key);
+  return has_any;
+}
+
+bool take_morph_targets(json& root) {
+  bool found = false;
+  if (!root.contains("meshes")) return found;
+  for (json& mesh : root["meshes"]) {
+    for (json& primitive : mesh["primitives"]) found |= take(primitive, "targets");
+  }
+  return found;
+}
+
+void move_indices(json& root) {
+  if (!root.contains("meshes")) return;
+  for (json& mesh : root["meshes"]) {
+    for (json& primitive : mesh["primitives"]) {
+      if (primitive.contains("indices")) primitive["attributes"][kIndicesAttribute] = primitive["indices"];
+      primitive.erase("indices");
+    }
+  }
+}
+
+}  // namespace
+
+GltfJson check_gltf_json(const std::string& text, const std::filesystem::path& path) {
+  const std::string file = path.string();
+  json root = parse(text, file);
+  if (!root.is_object()) fail(file, "JSON", "is not an object", "a glTF 2.0 scene");
+  for (const JsonRule& rule : gltf_json_rules()) RuleCheck(root, rule, file).run();
+  check_version(root, file);
+  GltfJson result;
+  result.has_animations = take(root, "animations");
+  result.has_skins = take(root, "skins");
+  result.has_morph_targets = take_morph_targets(root);
+  move_indices(root);
+  result.extensions_used = root.value("extensionsUsed", std::vector<std::string>{});
+  result.extensions_required = root.value("extensionsRequired", std::vector<std::string>{});
+  result.buffers = take_buffers(root);
+  result.images = take_images(root);
+  result.structure = root.dump();
+  return result;
+}
+
+}  // namespace chiaro::renderer

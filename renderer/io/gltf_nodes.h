@@ -1,0 +1,29 @@
+#pragma once
+// The node hierarchy, flattened.
+
+#include <string>
+#include <vector>
+
+#include "renderer/core/vec.h"
+#include "renderer/io/gltf_document.h"
+
+namespace chiaro::renderer {
+
+struct PlacedNode {
+  int node = 0;      // index into the file's nodes
+  std::string name;  // of the node; may be empty
+  int mesh = -1, camera = -1, light = -1;
+  Mat4f world_from_node;
+};
+
+// The nodes of the default scene, or of all scenes where there is no default one, parents before children.
+// Error for cycles, nodes with two parents, and transforms that are not finite.
+std::vector<PlacedNode> place_nodes(const GltfDocument& document);
+
+// "nodes[3]"
+std::string place_of(const PlacedNode& node);
+
+// EXT_mesh_gpu_instancing: the node's transforms of each copy of its mesh; one, the node's own, without it.
+std::vector<Mat4f> instance_transforms(const GltfDocument& document, const PlacedNode& node);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,184 @@
+#include "renderer/io/light_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "renderer/io/gltf_container.h"
+#include "renderer/io/gltf_document.h"
+#include "renderer/io/gltf_lights.h"
+#include "renderer/io/short_decimal.h"
+
+namespace chiaro::renderer {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+// One light of a JSON file, with what messages about it need.
+struct Entry {
+  const json& fields;
+  std::string file;
+  std::string place;  // "lights[2]"
+};
+
+[[noreturn]] void fail(const Entry& entry, const char* field, const std::string& problem, const std::string& expected) {
+  throw Error({entry.file, fmt::format("{}.{}", entry.place, field), problem, expected});
+}
+
+float checked_float(const Entry& entry, const char* field, const json& value, const std::string& expected) {
+  if (!value.is_number()) fail(entry, field, "is of the wrong type", expected);
+  const float number = value.get<float>();
+  if (!std::isfinite(number)) fail(entry, field, "is not finite", expected);
+  return number;
+}
+
+Vec3f read_vec3(const Entry& entry, const char* field, const std::string& expected) {
+  const auto value = entry.fields.find(field);
+  if (value == entry.fields.end()) fail(entry, field, "is missing", expected);
+  if (!value->is_array() || value->size() != 3) fail(entry, field, "is of the wrong type", expected);
+  Vec3f result;
+  for (int axis = 0; axis < 3; ++axis) result[axis] = checked_float(entry, field, (*value)[axis], expected);
+  return result;
+}
+
+Vec3f read_position(const Entry& entry) { return read_vec3(entry, "position", "three numbers, metres"); }
+
+Vec3f read_intensity(const Entry& entry, const char* unit) {
+  const std::string expected = fmt::format("three numbers, not negative, {}", unit);
+  const Vec3f intensity = read_vec3(entry, "intensity", expected);
+  if (min_component(intensity) < 0) fail(entry, "intensity", "is negative", expected);
+  return intensity;
+}
+
+Vec3f read_direction(const Entry& entry) {
+  const Vec3f d = read_vec3(entry, "direction", "three numbers");
+  const double l = std::hypot(double(d.x), double(d.y), double(d.z));
+  if (!(l > 0)) fail(entry, "direction", "is zero", "a direction");
+  // What is a unit vector already stays as it was written.
+  if (std::abs(l - 1) <= 1e-6) return d;
+  return {float(d.x / l), float(d.y / l), float(d.z / l)};
+}
+
+float read_angle(const Entry& entry, const char* field, float otherwise) {
+  const auto value = entry.fields.find(field);
+  if (value == entry.fields.end()) return otherwise;
+  const float angle = checked_float(entry, field, *value, "radians");
+  if (angle < 0 || angle > kPi / 2) fail(entry, field, fmt::format("is {}", angle), "0 to π/2 radians");
+  return angle;
+}
+
+std::string read_string(const Entry& entry, const char* field, const std::string& otherwise) {
+  const auto value = entry.fields.find(field);
+  if (value == entry.fields.end()) return otherwise;
+  if (!value->is_string()) fail(entry, field, "is of the wrong type", "a string");
+  return value->get<std::string>();
+}
+
+SpotLight read_spot(const Entry& entry, const std::string& name) {
+  SpotLight light;
+  light.name = name;
+  light.position = read_position(entry);
+  light.direction = read_direction(entry);
+  light.intensity = read_intensity(entry, "candela");
+  light.inner_cone_angle = read_angle(entry, "inner_cone_angle", light.inner_cone_angle);
+  light.outer_cone_angle = read_angle(entry, "outer_cone_angle", light.outer_cone_angle);
+  if (light.outer_cone_angle <= 0 || light.inner_cone_angle > light.outer_cone_angle) {
+    fail(entry, "outer_cone_angle", fmt::format("is {}", light.outer_cone_angle),
+         "more than 0 and not less than inner_cone_angle");
+  }
+  return light;
+}
+
+Light read_light(const Entry& entry, const std::string& default_name) {
+  if (!entry.fields.is_object()) throw Error({entry.file, entry.place, "is not an object", "a light"});
+  const std::string type = read_string(entry, "type", "point"), name = read_string(entry, "name", default_name);
+  if (type == "point") return PointLight{name, read_position(entry), read_intensity(entry, "candela")};
+  if (type == "spot") return read_spot(entry, name);
+  if (type == "directional") return DirectionalLight{name, read_direction(entry), read_intensity(entry, "lux")};
+  fail(entry, "type", fmt::format("is \"{}\"", type.substr(0, 40)), "point, spot or directional");
+}
+
+json parse(const std::string& text, const std::string& file) {
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw Error({file, "JSON", fmt::format("syntax error at byte {}", error.byte), "a light file"});
+  } catch (const json::exception&) {
+    throw Error({file, "JSON", "holds a number that is out of range", "a light file"});
+  }
+}
+
+Lights read_json_lights(const json& root, const std::string& file) {
+  if (!root.is_object() || !root.contains("lights") || !root["lights"].is_array()) {
+    throw Error({file, "lights", "is missing", "a light file, {\"lights\":[…]}"});
+  }
+  Lights lights;
+  for (const json& fields : root["lights"]) {
+    const std::size_t index = lights.size();
+    lights.push_back(read_light({fields, file, fmt::format("lights[{}]", index)}, fmt::format("light {}", index)));
+  }
+  return lights;
+}
+
+Lights read_gltf_lights(const std::filesystem::path& path) {
+  const GltfDocument document = open_gltf(path);
+  std::vector<std::string> warnings;
+  return read_lights(document, place_nodes(document), warnings);
+}
+
+ordered_json json_of(Vec3f v) { return {short_decimal(v.x), short_decimal(v.y), short_decimal(v.z)}; }
+
+ordered_json json_of(const PointLight& light) {
+  return {{"type", "point"}, {"position", json_of(light.position)}, {"intensity", json_of(light.intensity)}};
+}
+
+ordered_json json_of(const SpotLight& light) {
+  return {{"type", "spot"},
+          {"position", json_of(light.position)},
+          {"direction", json_of(light.direction)},
+          {"intensity", json_of(light.intensity)},
+          {"inner_cone_angle", short_decimal(light.inner_cone_angle)},
+          {"outer_cone_angle", short_decimal(light.outer_cone_angle)}};
+}
+
+ordered_json json_of(const DirectionalLight& light) {
+  return {{"type", "directional"}, {"direction", json_of(light.direction)}, {"intensity", json_of(light.illuminance)}};
+}
+
+ordered_json json_of(const Light& light) {
+  ordered_json fields = std::visit([](const auto& l) { return json_of(l); }, light);
+  if (!name_of(light).empty()) fields["name"] = name_of(light);
+  return fields;
+}
+
+// Names that are not UTF-8 do not stop a light from being saved.
+std::string dumped(const Light& light) {
+  return json_of(light).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Lights load_lights(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const bool binary = is_glb(bytes);
+  const json root = binary ? json() : parse(bytes, path.string());
+  const bool gltf = binary || (root.is_object() && root.contains("asset"));
+  Lights lights = gltf ? read_gltf_lights(path) : read_json_lights(root, path.string());
+  if (lights.empty()) throw Error({path.string(), "lights", "there are none", "at least one light"});
+  return lights;
+}
+
+void save_lights(const Lights& lights, const std::filesystem::path& path) {
+  std::string text = "{\"lights\":[";
+  for (std::size_t i = 0; i < lights.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + dumped(lights[i]);
+  text += "\n]}\n";
+  write_file_atomically(path, text);
+}
+
+}  // namespace chiaro::renderer

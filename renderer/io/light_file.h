@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "renderer/scene/light.h"
+
+namespace chiaro::renderer {
+
+// A light file: .glb/.gltf with KHR_lights_punctual, or JSON {"lights":[{"type":"point","position":[x,y,z],
+// "intensity":[r,g,b]}, …]} (types and fields: the README's "Light files"). Error, naming the light and field, where a
+// value is missing, of the wrong kind, not finite or negative, where a direction is zero, or where there are no lights.
+Lights load_lights(const std::filesystem::path& path);
+
+// The JSON form.
+void save_lights(const Lights& lights, const std::filesystem::path& path);
+
+}  // namespace chiaro::renderer

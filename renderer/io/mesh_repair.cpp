@@ -1,0 +1,167 @@
+#include "renderer/io/mesh_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace chiaro::renderer {
+namespace {
+
+using Vec3d = std::array<double, 3>;
+
+Vec3d difference(Vec3f a, Vec3f b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
+
+double length(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
+
+// Twice the area long. In double, so that products of floats neither round nor overflow.
+Vec3d area_vector(const std::vector<Vec3f>& positions, const Triangle& t) {
+  const Vec3d a = difference(positions[t[1]], positions[t[0]]), b = difference(positions[t[2]], positions[t[0]]);
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vec3f unit(const Vec3d& v) {
+  const double l = length(v);
+  return l > 0 ? Vec3f{float(v[0] / l), float(v[1] / l), float(v[2] / l)} : Vec3f{0, 1, 0};
+}
+
+std::size_t drop_degenerate_triangles(Mesh& mesh) {
+  return std::erase_if(mesh.triangles, [&](const Triangle& t) { return length(area_vector(mesh.positions, t)) == 0; });
+}
+
+template <class T>
+void gather(std::vector<T>& values, const std::vector<std::uint32_t>& sources) {
+  if (values.empty()) return;
+  std::vector<T> gathered(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) gathered[i] = values[sources[i]];
+  values = std::move(gathered);
+}
+
+// New vertex i is old vertex sources[i].
+void gather_vertices(Mesh& mesh, const std::vector<std::uint32_t>& sources) {
+  gather(mesh.positions, sources);
+  gather(mesh.normals, sources);
+  gather(mesh.tangents, sources);
+  gather(mesh.uv[0], sources);
+  gather(mesh.uv[1], sources);
+  gather(mesh.colors, sources);
+}
+
+void drop_unused_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> new_index(mesh.positions.size(), 0), sources;
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) new_index[v] = 1;
+  }
+  for (std::uint32_t v = 0; v < new_index.size(); ++v) {
+    if (new_index[v] == 0) continue;
+    new_index[v] = std::uint32_t(sources.size());
+    sources.push_back(v);
+  }
+  if (sources.size() == mesh.positions.size()) return;
+  for (Triangle& t : mesh.triangles) t = {new_index[t[0]], new_index[t[1]], new_index[t[2]]};
+  gather_vertices(mesh, sources);
+}
+
+void unshare_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> sources;
+  sources.reserve(3 * mesh.triangles.size());
+  for (Triangle& t : mesh.triangles) {
+    sources.insert(sources.end(), t.begin(), t.end());
+    const std::uint32_t first = std::uint32_t(sources.size()) - 3;
+    t = {first, first + 1, first + 2};
+  }
+  gather_vertices(mesh, sources);
+}
+
+// glTF 2.0, section 3.7.2.1: without normals they are flat, and given tangents are ignored.
+void make_flat_normals(Mesh& mesh) {
+  mesh.tangents.clear();
+  unshare_vertices(mesh);
+  mesh.normals.resize(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3f normal = unit(area_vector(mesh.positions, t));
+    for (const std::uint32_t v : t) mesh.normals[v] = normal;
+  }
+}
+
+bool is_direction(double l) { return std::isfinite(l) && l > 1e-12; }
+
+std::size_t repair_normals(Mesh& mesh) {
+  std::size_t bad = 0;
+  std::vector<Vec3f> smooth;
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    Vec3f& n = mesh.normals[i];
+    const double l = std::hypot(double(n.x), double(n.y), double(n.z));
+    if (is_direction(l)) {
+      n = {float(n.x / l), float(n.y / l), float(n.z / l)};
+      continue;
+    }
+    if (smooth.empty()) smooth = smooth_normals(mesh.positions, mesh.triangles);
+    n = smooth[i];
+    ++bad;
+  }
+  return bad;
+}
+
+bool repair_tangents(Mesh& mesh) {
+  for (Vec4f& t : mesh.tangents) {
+    const double l = std::hypot(double(t.x), double(t.y), double(t.z));
+    if (!is_direction(l) || !std::isfinite(t.w)) {
+      mesh.tangents.clear();
+      return false;
+    }
+    t = {float(t.x / l), float(t.y / l), float(t.z / l), t.w < 0 ? -1.0F : 1.0F};
+  }
+  return true;
+}
+
+std::size_t repair_uv(std::vector<Vec2f>& uv) {
+  std::size_t bad = 0;
+  for (Vec2f& c : uv) {
+    if (std::isfinite(c.x) && std::isfinite(c.y)) continue;
+    c = {0, 0};
+    ++bad;
+  }
+  return bad;
+}
+
+std::size_t repair_colors(std::vector<Vec4f>& colors) {
+  std::size_t bad = 0;
+  for (Vec4f& c : colors) {
+    for (float* channel : {&c.x, &c.y, &c.z, &c.w}) {
+      bad += std::isfinite(*channel) ? 0 : 1;
+      *channel = std::isfinite(*channel) ? std::clamp(*channel, 0.0F, 1.0F) : 1.0F;
+    }
+  }
+  return bad;
+}
+
+}  // namespace
+
+void repair_mesh(Mesh& mesh, MeshRepairs& repairs) {
+  repairs.degenerate_triangles += drop_degenerate_triangles(mesh);
+  drop_unused_vertices(mesh);
+  if (mesh.normals.empty()) {
+    make_flat_normals(mesh);
+  } else {
+    repairs.bad_normals += repair_normals(mesh);
+  }
+  repairs.bad_tangent_meshes += repair_tangents(mesh) ? 0 : 1;
+  repairs.bad_coordinates += repair_uv(mesh.uv[0]) + repair_uv(mesh.uv[1]) + repair_colors(mesh.colors);
+}
+
+std::vector<Vec3f> smooth_normals(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3d> sums(positions.size(), Vec3d{});
+  for (const Triangle& t : triangles) {
+    const Vec3d area = area_vector(positions, t);
+    for (const std::uint32_t v : t) {
+      for (int axis = 0; axis < 3; ++axis) sums[v][axis] += area[axis];
+    }
+  }
+  std::vector<Vec3f> normals(positions.size());
+  std::transform(sums.begin(), sums.end(), normals.begin(), unit);
+  return normals;
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "renderer/scene/light.h"
+
+namespace chiaro::renderer {
+
+struct AddLightsOptions {
+  bool keep_lights = false;  // lights already in the scene stay; otherwise they are taken out
+};
+
+// Writes `scene_path` (.glb or .gltf) as `path` (.glb, or .gltf with data embedded) with KHR_lights_punctual nodes for
+// `lights` added at the root of its default scene. All else in the file — meshes, images, extensions unknown to us — is
+// kept as it is; external buffers and images are embedded.
+void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights& lights,
+                           const std::filesystem::path& path, const AddLightsOptions& options);
+
+}  // namespace chiaro::renderer

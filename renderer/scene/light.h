@@ -1,0 +1,42 @@
+#pragma once
+// Lights, in photometric units per Rec.709 channel. To add a kind: add a struct, list it in Light, and follow the
+// compiler through the std::visit calls (trace/light_sampling, io/light_file, io/gltf_lights).
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/core/vec.h"
+
+namespace chiaro::renderer {
+
+struct PointLight {
+  std::string name;
+  Vec3f position;   // metres
+  Vec3f intensity;  // candela
+};
+
+// As KHR_lights_punctual: full inside the inner cone, a smooth fall to zero at the outer one.
+struct SpotLight {
+  std::string name;
+  Vec3f position;
+  Vec3f direction{0, 0, -1};             // unit, from the light outwards
+  Vec3f intensity;                       // candela, on the axis
+  float inner_cone_angle = 0;            // radians from the axis
+  float outer_cone_angle = 0.78539816F;  // radians from the axis
+};
+
+struct DirectionalLight {
+  std::string name;
+  Vec3f direction{0, 0, -1};  // unit, the way the light travels
+  Vec3f illuminance;          // lux, on a plane across the direction
+};
+
+using Light = std::variant<PointLight, SpotLight, DirectionalLight>;
+using Lights = std::vector<Light>;
+
+inline const std::string& name_of(const Light& light) {
+  return std::visit([](const auto& l) -> const std::string& { return l.name; }, light);
+}
+
+}  // namespace chiaro::renderer

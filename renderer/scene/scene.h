@@ -1,0 +1,91 @@
+#pragma once
+// A scene as the renderer sees it: meshes, instances, materials, textures, cameras. Immutable after loading.
+// World space: right-handed, +Y up, metres. Colours: scene-linear Rec.709. Lights are not part of it.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "renderer/core/vec.h"
+#include "renderer/image/texture.h"
+
+namespace chiaro::renderer {
+
+// The use of a texture by a material; texture < 0: none.
+struct TextureUse {
+  int texture = -1;
+  int uv_set = 0;  // 0 or 1
+};
+
+enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
+
+// glTF 2.0 metallic-roughness. Factors are multiplied with their textures, as the specification says.
+struct Material {
+  std::string name;
+  Vec3f base_color{1, 1, 1};
+  float alpha = 1;
+  TextureUse base_color_texture;  // sRGB
+  float metallic = 1, roughness = 1;
+  TextureUse metallic_roughness_texture;  // G roughness, B metallic; linear
+  TextureUse normal_texture;              // linear
+  float normal_scale = 1;
+  Vec3f emission{0, 0, 0};      // cd/m²: emissiveFactor times KHR_materials_emissive_strength
+  TextureUse emission_texture;  // sRGB
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5F;
+  bool double_sided = false;
+  bool lambert = false;              // Lambert of the base colour instead of metallic-roughness
+  bool constant_base_color = false;  // neither texture nor vertex colour changes the base colour; alpha still does
+};
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+// One glTF primitive. normals have the length of positions (made flat on loading where absent); tangents, uv sets and
+// colors are empty or have that length too.
+struct Mesh {
+  std::string name;
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;
+  std::vector<Vec4f> tangents;  // w: handedness
+  std::array<std::vector<Vec2f>, 2> uv;
+  std::vector<Vec4f> colors;  // linear RGBA
+  std::vector<Triangle> triangles;
+  int material = 0;  // index into Scene::materials
+};
+
+// A mesh placed in the world.
+struct Instance {
+  std::string name;  // of the glTF node
+  int mesh = 0;      // index into Scene::meshes
+  Mat4f world_from_object;
+};
+
+// Looks along its -Z axis, +Y up.
+struct Camera {
+  std::string name;
+  Mat4f world_from_camera;
+  bool orthographic = false;
+  float vertical_fov = 0.7F;              // radians; perspective
+  float half_width = 1, half_height = 1;  // metres; orthographic (glTF xmag, ymag)
+  float aspect_ratio = 0;                 // width / height; 0: not given
+  float near = 0.01F, far = kInfinity;    // metres
+};
+
+struct Scene {
+  std::string path;  // where it was loaded from, for messages
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;  // never empty
+  std::vector<Texture> textures;
+  std::vector<Camera> cameras;
+};
+
+Box3f bounds(const Scene& scene);  // world, over all instances' vertices; empty for a scene without triangles
+
+// Fingerprint of all that light transport depends on: geometry, instances, materials, textures; not cameras.
+std::string fingerprint(const Scene& scene);
+
+std::size_t drawn_triangle_count(const Scene& scene);  // instances counted each
+
+}  // namespace chiaro::renderer

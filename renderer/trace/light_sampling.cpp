@@ -1,0 +1,117 @@
+#include "renderer/trace/light_sampling.h"
+
+#include <algorithm>
+
+#include "renderer/trace/surface_point.h"
+
+namespace chiaro::renderer {
+namespace {
+
+struct PunctualVisitor {
+  Vec3f point;
+
+  PunctualSample operator()(const PointLight& light) const { return arriving(light.position, light.intensity); }
+
+  PunctualSample operator()(const SpotLight& light) const {
+    PunctualSample s = arriving(light.position, light.intensity);
+    s.irradiance *= cone_falloff(light, -dot(s.to_light, light.direction));
+    return s;
+  }
+
+  PunctualSample operator()(const DirectionalLight& light) const {
+    return {-light.direction, kInfinity, light.illuminance};
+  }
+
+  PunctualSample arriving(Vec3f position, Vec3f intensity) const {
+    const Vec3f d = position - point;
+    const float d2 = length_squared(d);
+    if (!(d2 > 0)) return {{0, 0, 1}, 0, {}};
+    const float distance = std::sqrt(d2);
+    return {d / distance, distance, intensity / d2};
+  }
+
+  // KHR_lights_punctual's recommended spot falloff.
+  static float cone_falloff(const SpotLight& light, float cosine) {
+    const float cos_inner = std::cos(light.inner_cone_angle), cos_outer = std::cos(light.outer_cone_angle);
+    const float t = std::clamp((cosine - cos_outer) / std::max(1e-3F, cos_inner - cos_outer), 0.0F, 1.0F);
+    return t * t;
+  }
+};
+
+// Mean luminance over a triangle of a texture, from a few points; never zero where anything may be emitted.
+float mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+  constexpr float kPoints[][2] = {{1 / 3.F, 1 / 3.F}, {.1F, .1F},  {.8F, .1F}, {.1F, .8F},
+                                  {.45F, .45F},       {.45F, .1F}, {.1F, .45F}};
+  float sum = 0;
+  for (const auto& p : kPoints) sum += luminance(surface_emission(scene, mesh, triangle, p[0], p[1]));
+  return sum / float(std::size(kPoints)) + 0.02F * luminance(scene.materials[mesh.material].emission);
+}
+
+}  // namespace
+
+PunctualSample sample_punctual(const Light& light, Vec3f point) { return std::visit(PunctualVisitor{point}, light); }
+
+EmissiveTriangles::EmissiveTriangles(const Scene& scene) : scene_(scene), probability_(scene.instances.size()) {
+  std::vector<double> power;
+  double total = 0;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (max_component(scene.materials[mesh.material].emission) <= 0) continue;
+    probability_[i].assign(mesh.triangles.size(), 0.0F);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      Vec3f p[3];
+      for (int k = 0; k < 3; ++k)
+        p[k] = transform_point(instance.world_from_object, mesh.positions[mesh.triangles[t][k]]);
+      const Vec3f n = cross(p[1] - p[0], p[2] - p[0]);
+      const float area = 0.5F * length(n);
+      if (!(area > 0)) continue;
+      triangles_.push_back({i, t, p[0], p[1], p[2], n / (2 * area), area});
+      power.push_back(double(area) * mean_emission(scene, mesh, t));
+      total += power.back();
+    }
+  }
+  double sum = 0;
+  for (std::size_t k = 0; k < triangles_.size(); ++k) {
+    sum += power[k];
+    cumulative_.push_back(float(sum / total));
+    probability_[triangles_[k].instance][triangles_[k].triangle] = float(power[k] / total);
+  }
+}
+
+EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, float pick, Vec2f u) const {
+  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), pick);
+  const std::size_t index = std::min<std::size_t>(std::size_t(found - cumulative_.begin()), triangles_.size() - 1);
+  const Emitter& e = triangles_[index];
+  const float root = std::sqrt(u.x);
+  const float bu = root * (1 - u.y), bv = root * u.y;
+  const Vec3f p = (1 - bu - bv) * e.p0 + bu * e.p1 + bv * e.p2;
+  const Vec3f d = p - point;
+  const float d2 = length_squared(d);
+  if (!(d2 > 0)) return {};
+  Sample s;
+  s.distance = std::sqrt(d2);
+  s.to_light = d / s.distance;
+  const float cosine = std::abs(dot(s.to_light, e.normal));
+  if (!(cosine > 1e-7F)) return {};
+  s.radiance = surface_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
+  s.pdf = probability_[e.instance][e.triangle] / e.area * d2 / cosine;
+  return s;
+}
+
+float EmissiveTriangles::pdf(const Hit& hit, Vec3f from, Vec3f hit_position) const {
+  const auto& probabilities = probability_[hit.instance];
+  if (probabilities.empty() || probabilities[hit.triangle] <= 0) return 0;
+  const Instance& instance = scene_.instances[hit.instance];
+  const Mesh& mesh = scene_.meshes[instance.mesh];
+  const Triangle& t = mesh.triangles[hit.triangle];
+  Vec3f p[3];
+  for (int k = 0; k < 3; ++k) p[k] = transform_point(instance.world_from_object, mesh.positions[t[k]]);
+  const float area = 0.5F * length(cross(p[1] - p[0], p[2] - p[0]));
+  const Vec3f d = hit_position - from;
+  const float d2 = length_squared(d);
+  const float cosine = std::abs(dot(d, hit.geometric_normal)) / std::sqrt(d2);
+  return cosine > 1e-7F ? probabilities[hit.triangle] / area * d2 / cosine : 0;
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,51 @@
+#pragma once
+// Light arriving at a point from punctual lights and from the scene's emissive triangles.
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/scene/light.h"
+#include "renderer/trace/ray_tracer.h"
+
+namespace chiaro::renderer {
+
+// What a punctual light sends to a point, before anything stands between.
+struct PunctualSample {
+  Vec3f to_light;      // unit
+  float distance = 0;  // metres; infinite for directional lights
+  Vec3f irradiance;    // lux / cd·m⁻² per channel on a plane across to_light: intensity / distance²
+};
+
+PunctualSample sample_punctual(const Light& light, Vec3f point);
+
+// The scene's emissive triangles, sampled by power.
+class EmissiveTriangles {
+ public:
+  explicit EmissiveTriangles(const Scene& scene);
+  bool empty() const { return triangles_.empty(); }
+
+  struct Sample {
+    Vec3f to_light;  // unit
+    float distance = 0;
+    Vec3f radiance;  // cd/m²
+    float pdf = 0;   // per steradian, at the point
+  };
+  // pdf 0: nothing arrives.
+  Sample sample(Vec3f point, float pick, Vec2f u) const;
+  // Density, per steradian at `from`, with which sample() finds this hit.
+  float pdf(const Hit& hit, Vec3f from, Vec3f hit_position) const;
+
+ private:
+  struct Emitter {
+    std::uint32_t instance, triangle;
+    Vec3f p0, p1, p2;  // world
+    Vec3f normal;      // unit
+    float area;        // m²
+  };
+  const Scene& scene_;
+  std::vector<Emitter> triangles_;
+  std::vector<float> cumulative_;                // of the probability, per emitter; the last is 1
+  std::vector<std::vector<float>> probability_;  // per instance and triangle; empty where nothing is emitted
+};
+
+}  // namespace chiaro::renderer

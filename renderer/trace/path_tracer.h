@@ -1,0 +1,63 @@
+#pragma once
+// The light transport estimator that frames and illumination share: unidirectional path tracing with next-event
+// estimation, multiple importance sampling for emissive surfaces, and Russian roulette.
+// Source: Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997 (balance heuristic: eq. 9.8).
+
+#include <vector>
+
+#include "renderer/core/sampler.h"
+#include "renderer/trace/bsdf.h"
+#include "renderer/trace/light_sampling.h"
+
+namespace chiaro::renderer {
+
+// Light that came by one path, taken apart. Vertex 0 is the surface whose light is asked for.
+struct PathLight {
+  Vec3f direct;    // from an emitter to vertex 0
+  Vec3f indirect;  // through one further surface or more
+  // Per punctual light, and the emissive surfaces last; empty: not asked for. direct + indirect = their sum.
+  std::vector<Vec3f> per_light;
+
+  void add(int vertex, std::size_t source, Vec3f value) {
+    (vertex == 0 ? direct : indirect) += value;
+    if (!per_light.empty()) per_light[source] += value;
+  }
+};
+
+class PathTracer {
+ public:
+  // Keeps references to both, which must outlive it. bounces: indirect ones, -1 = until Russian roulette ends the path.
+  PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission);
+
+  // Radiance leaving `vertex` towards to_viewer, its emission left out, times `throughput`, added to `light`.
+  // `index` is the number of `vertex` on its path.
+  void add_scattered(const SurfacePoint& vertex, Vec3f to_viewer, int index, Vec3f throughput, Sampler& sampler,
+                     PathLight& light) const;
+
+  // Illumination (irradiance / π) of a surface point by one path. `with_punctual`: its direct light from punctual
+  // lights too, which needs no more than one sample where no surface is alpha-blended.
+  void add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler, PathLight& light) const;
+  void add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const;
+
+  bool has_emission() const { return !emitters_.empty(); }
+  std::size_t emission_source() const { return lights_.size(); }
+  const RayTracer& tracer() const { return tracer_; }
+
+ private:
+  struct Vertex;
+  void trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
+             PathLight& light) const;
+  void add_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  float visibility(Vec3f origin, Vec3f to_light, float distance, Sampler& sampler) const;
+
+  const RayTracer& tracer_;
+  const Lights& lights_;
+  EmissiveTriangles emitters_;
+  int bounces_;
+};
+
+// Whether any material is alpha-blended, so that shadows are a matter of chance.
+bool has_blended_surfaces(const Scene& scene);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,211 @@
+#include "renderer/trace/ray_tracer.h"
+
+#include <bit>
+#include <cstring>
+
+#include <embree3/rtcore.h>
+
+#include "renderer/core/error.h"
+#include "renderer/core/sampler.h"
+#include "renderer/trace/surface_point.h"
+
+namespace chiaro::renderer {
+namespace {
+
+struct RayContext {
+  RTCIntersectContext embree;  // first: Embree hands this address to the filter
+  std::uint32_t alpha_seed;
+};
+
+struct GeometryUser {
+  const Scene* scene;
+  const Mesh* mesh;
+};
+
+// Alpha mask and blend: a hit that the alpha does not hold is passed through.
+void filter_alpha(const RTCFilterFunctionNArguments* arguments) {
+  if (arguments->valid[0] != -1) return;
+  const auto& user = *static_cast<const GeometryUser*>(arguments->geometryUserPtr);
+  const std::uint32_t triangle = RTCHitN_primID(arguments->hit, 1, 0);
+  const float u = RTCHitN_u(arguments->hit, 1, 0), v = RTCHitN_v(arguments->hit, 1, 0);
+  const float alpha = surface_alpha(*user.scene, *user.mesh, triangle, u, v);
+  const Material& material = user.scene->materials[user.mesh->material];
+  bool solid = alpha >= material.alpha_cutoff;
+  if (material.alpha_mode == AlphaMode::kBlend) {
+    const std::uint32_t seed = reinterpret_cast<const RayContext*>(arguments->context)->alpha_seed;
+    const std::uint32_t instance = RTCHitN_instID(arguments->hit, 1, 0, 0);
+    const std::uint32_t surface = hash_combine(RTCHitN_geomID(arguments->hit, 1, 0), instance);
+    solid = unit_float(hash_combine(hash_combine(seed, triangle), surface)) < alpha;
+  }
+  if (!solid) arguments->valid[0] = 0;
+}
+
+std::vector<int> instances_per_mesh(const Scene& scene) {
+  std::vector<int> count(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++count[instance.mesh];
+  return count;
+}
+
+RTCRay make_ray(const Ray& ray) {
+  RTCRay r{};
+  r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
+  r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
+  r.tnear = ray.near, r.tfar = ray.far;
+  r.mask = ~0U;
+  return r;
+}
+
+RayContext make_context(const Ray& ray, bool coherent) {
+  RayContext context;
+  rtcInitIntersectContext(&context.embree);
+  if (coherent) context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.alpha_seed = ray.alpha_seed;
+  return context;
+}
+
+}  // namespace
+
+// A mesh drawn once is put into the root scene in world space, so that its triangles share the root's hierarchy; a mesh
+// drawn more often has a scene of its own, which the root instances.
+struct RayTracer::Embree {
+  RTCDevice device = nullptr;
+  RTCScene root = nullptr;
+  std::vector<RTCScene> mesh_scenes;
+  std::vector<GeometryUser> users;                  // per mesh; stable addresses
+  std::vector<std::uint32_t> instance_of_geometry;  // by root geometry id
+  std::vector<Mat4f> world_from_object;             // by instance, identity for flattened ones
+  std::vector<bool> flattened;                      // by instance
+
+  ~Embree() {
+    for (RTCScene scene : mesh_scenes) {
+      if (scene != nullptr) rtcReleaseScene(scene);
+    }
+    if (root != nullptr) rtcReleaseScene(root);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  RTCGeometry make_geometry(const Mesh& mesh, std::size_t user, const Mat4f& target_from_object) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 sizeof(Vec3f), mesh.positions.size()));
+    auto* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle),
+                                            mesh.triangles.size());
+    if (vertices == nullptr || indices == nullptr)
+      throw Error({"", "ray tracer", "not enough memory for the scene", ""});
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      vertices[i] = transform_point(target_from_object, mesh.positions[i]);
+    }
+    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+    rtcSetGeometryUserData(geometry, &users[user]);
+    if (users[user].scene->materials[mesh.material].alpha_mode != AlphaMode::kOpaque) {
+      rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
+      rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+    }
+    rtcCommitGeometry(geometry);
+    return geometry;
+  }
+
+  RTCScene make_scene() {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    return scene;
+  }
+
+  void attach(RTCScene scene, RTCGeometry geometry) {
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
+  RTCScene scene_of_mesh(const Scene& scene, int mesh) {
+    if (mesh_scenes[mesh] == nullptr) {
+      mesh_scenes[mesh] = make_scene();
+      attach(mesh_scenes[mesh], make_geometry(scene.meshes[mesh], std::size_t(mesh), Mat4f{}));
+      rtcCommitScene(mesh_scenes[mesh]);
+    }
+    return mesh_scenes[mesh];
+  }
+
+  void add_instance(const Scene& scene, std::uint32_t index, bool flatten) {
+    const Instance& instance = scene.instances[index];
+    RTCGeometry geometry;
+    if (flatten) {
+      geometry = make_geometry(scene.meshes[instance.mesh], std::size_t(instance.mesh), instance.world_from_object);
+    } else {
+      geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(geometry, scene_of_mesh(scene, instance.mesh));
+      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, instance.world_from_object.m.data());
+      rtcCommitGeometry(geometry);
+    }
+    attach(root, geometry);
+    instance_of_geometry.push_back(index);
+    world_from_object.push_back(instance.world_from_object);
+    flattened.push_back(flatten);
+  }
+};
+
+RayTracer::RayTracer(const Scene& scene)
+    : scene_(scene), bounds_(chiaro::renderer::bounds(scene)), embree_(std::make_unique<Embree>()) {
+  embree_->device = rtcNewDevice(nullptr);
+  if (embree_->device == nullptr)
+    throw Error({"", "ray tracer", "Embree cannot be started", "a CPU that Embree supports"});
+  embree_->root = embree_->make_scene();
+  embree_->mesh_scenes.assign(scene.meshes.size(), nullptr);
+  for (const Mesh& mesh : scene.meshes) embree_->users.push_back({&scene, &mesh});
+  const std::vector<int> uses = instances_per_mesh(scene);
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    embree_->add_instance(scene, i, uses[scene.instances[i].mesh] == 1);
+  }
+  rtcCommitScene(embree_->root);
+  if (rtcGetDeviceError(embree_->device) == RTC_ERROR_OUT_OF_MEMORY) {
+    throw Error({"", "ray tracer", "not enough memory for the scene", ""});
+  }
+}
+
+RayTracer::~RayTracer() = default;
+
+std::optional<Hit> RayTracer::intersect(const Ray& ray) const {
+  RayContext context = make_context(ray, false);
+  RTCRayHit query;
+  query.ray = make_ray(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->root, &context.embree, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+  const std::uint32_t instance = embree_->instance_of_geometry[instanced ? query.hit.instID[0] : query.hit.geomID];
+  const Mat4f& world_from_object = embree_->world_from_object[instance];
+  Vec3f normal{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
+  // Ng follows the order of the vertices as traced; a mirrored mesh turns its triangles round, as glTF has it.
+  normal = instanced ? transform_normal(world_from_object, normal)
+                     : normalize(std::copysign(1.0F, determinant3(world_from_object)) * normal);
+  return Hit{query.ray.tfar, query.hit.u, query.hit.v, instance, query.hit.primID, normal};
+}
+
+bool RayTracer::occluded(const Ray& ray) const {
+  RayContext context = make_context(ray, true);
+  RTCRay query = make_ray(ray);
+  rtcOccluded1(embree_->root, &context.embree, &query);
+  return query.tfar < 0;
+}
+
+bool RayTracer::occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const {
+  return occluded({from, to - from, 0, 1, alpha_seed});
+}
+
+Vec3f offset_point(Vec3f point, Vec3f normal) {
+  constexpr float kOrigin = 1.0F / 32, kFloatScale = 1.0F / 65536, kIntScale = 256;
+  Vec3f moved;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float p = point[axis], n = normal[axis];
+    if (std::abs(p) < kOrigin) {
+      moved[axis] = p + kFloatScale * n;
+    } else {
+      const auto steps = std::int32_t(kIntScale * n);
+      moved[axis] = std::bit_cast<float>(std::bit_cast<std::int32_t>(p) + (p < 0 ? -steps : steps));
+    }
+  }
+  return moved;
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,137 @@
+#include "renderer/trace/surface_point.h"
+
+#include "renderer/trace/texture_lookup.h"
+
+namespace chiaro::renderer {
+namespace {
+
+// A triangle's corner values blended at barycentric u, v.
+template <class T>
+T interpolate(const std::vector<T>& values, const Triangle& t, float u, float v) {
+  return (1 - u - v) * values[t[0]] + u * values[t[1]] + v * values[t[2]];
+}
+
+struct Locus {
+  const Scene& scene;
+  const Mesh& mesh;
+  const Triangle& triangle;
+  float u, v;
+
+  std::optional<Vec4f> sample(const TextureUse& use, bool srgb) const {
+    if (use.texture < 0 || mesh.uv[use.uv_set].empty()) return std::nullopt;
+    return look_up(scene.textures[use.texture], interpolate(mesh.uv[use.uv_set], triangle, u, v), srgb);
+  }
+};
+
+Locus locus_at(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  return {scene, mesh, mesh.triangles[triangle], u, v};
+}
+
+Vec3f base_color(const Locus& at, const Material& material) {
+  Vec3f color = material.base_color;
+  if (material.constant_base_color) return color;
+  if (const auto texel = at.sample(material.base_color_texture, true)) color *= {texel->x, texel->y, texel->z};
+  if (!at.mesh.colors.empty()) {
+    const Vec4f vertex = interpolate(at.mesh.colors, at.triangle, at.u, at.v);
+    color *= {vertex.x, vertex.y, vertex.z};
+  }
+  return max(min(color, {1, 1, 1}), {0, 0, 0});
+}
+
+Vec3f emission(const Locus& at, const Material& material) {
+  if (max_component(material.emission) <= 0) return {};
+  const auto texel = at.sample(material.emission_texture, true);
+  return texel ? material.emission * Vec3f{texel->x, texel->y, texel->z} : material.emission;
+}
+
+// The direction in which texture coordinate u grows, and its handedness; from the file, or from positions and uv.
+std::optional<Vec4f> tangent_at(const Locus& at, int uv_set) {
+  if (!at.mesh.tangents.empty()) return interpolate(at.mesh.tangents, at.triangle, at.u, at.v);
+  const Triangle& t = at.triangle;
+  const auto& p = at.mesh.positions;
+  const auto& uv = at.mesh.uv[uv_set];
+  const Vec3f e1 = p[t[1]] - p[t[0]], e2 = p[t[2]] - p[t[0]];
+  const float du1 = uv[t[1]].x - uv[t[0]].x, dv1 = uv[t[1]].y - uv[t[0]].y;
+  const float du2 = uv[t[2]].x - uv[t[0]].x, dv2 = uv[t[2]].y - uv[t[0]].y;
+  const float det = du1 * dv2 - du2 * dv1;
+  if (det == 0) return std::nullopt;
+  const Vec3f d = (dv2 * e1 - dv1 * e2) / det;
+  return Vec4f{d.x, d.y, d.z, det < 0 ? -1.0F : 1.0F};
+}
+
+// Normal maps, as glTF has them: +Y up in the texture, tangent space of the object's normal.
+Vec3f mapped_normal(const Locus& at, const Material& material, Vec3f object_normal) {
+  const auto texel = at.sample(material.normal_texture, false);
+  if (!texel) return object_normal;
+  const auto tangent4 = tangent_at(at, material.normal_texture.uv_set);
+  if (!tangent4) return object_normal;
+  Vec3f tangent{tangent4->x, tangent4->y, tangent4->z};
+  tangent = tangent - dot(tangent, object_normal) * object_normal;
+  if (!(length_squared(tangent) > 0)) return object_normal;
+  tangent = normalize(tangent);
+  const Vec3f bitangent = tangent4->w * cross(object_normal, tangent);
+  const Vec3f n = (material.normal_scale * (2 * texel->x - 1)) * tangent +
+                  (material.normal_scale * (2 * texel->y - 1)) * bitangent + (2 * texel->z - 1) * object_normal;
+  return length_squared(n) > 0 ? normalize(n) : object_normal;
+}
+
+// A shading normal that faces away from the viewer is bent until the viewer is just above its horizon.
+Vec3f bend_towards(Vec3f normal, Vec3f to_viewer, Vec3f geometric_normal) {
+  constexpr float kLeast = 1e-3F;
+  const float c = dot(normal, to_viewer);
+  if (c >= kLeast) return normal;
+  const Vec3f bent = normal + (kLeast - c) * to_viewer;
+  const Vec3f n = length_squared(bent) > 1e-8F ? normalize(bent) : geometric_normal;
+  return dot(n, to_viewer) > 0 ? n : geometric_normal;
+}
+
+Vec3f shading_normal(const Locus& at, const Material& material, const Mat4f& world_from_object, const Hit& hit) {
+  Vec3f n = interpolate(at.mesh.normals, at.triangle, at.u, at.v);
+  if (!(length_squared(n) > 0)) return hit.geometric_normal;
+  n = transform_normal(world_from_object, mapped_normal(at, material, normalize(n)));
+  return length_squared(n) > 0 ? n : hit.geometric_normal;
+}
+
+}  // namespace
+
+float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const Locus at = locus_at(scene, mesh, triangle, u, v);
+  const Material& material = scene.materials[mesh.material];
+  float alpha = material.alpha;
+  if (const auto texel = at.sample(material.base_color_texture, true)) alpha *= texel->w;
+  if (!mesh.colors.empty()) alpha *= interpolate(mesh.colors, at.triangle, u, v).w;
+  return alpha;
+}
+
+Vec3f surface_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  return emission(locus_at(scene, mesh, triangle, u, v), scene.materials[mesh.material]);
+}
+
+SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+  const Instance& instance = scene.instances[hit.instance];
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  const Material& material = scene.materials[mesh.material];
+  const Locus at = locus_at(scene, mesh, hit.triangle, hit.u, hit.v);
+  SurfacePoint point;
+  point.position = transform_point(instance.world_from_object, interpolate(mesh.positions, at.triangle, hit.u, hit.v));
+  point.front = dot(hit.geometric_normal, ray.direction) <= 0;
+  const float side = point.front ? 1.0F : -1.0F;
+  point.geometric_normal = side * hit.geometric_normal;
+  const Vec3f to_viewer = -normalize(ray.direction);
+  const Vec3f normal = shading_normal(at, material, instance.world_from_object, hit);
+  // The side is the geometry's to decide: an interpolated normal may lean over the horizon of its triangle.
+  const float agrees = dot(normal, hit.geometric_normal) < 0 ? -side : side;
+  point.shading_normal = bend_towards(agrees * normal, to_viewer, point.geometric_normal);
+  point.base_color = base_color(at, material);
+  point.lambert = material.lambert;
+  point.metallic = material.metallic;
+  point.roughness = material.roughness;
+  if (const auto texel = at.sample(material.metallic_roughness_texture, false)) {
+    point.roughness *= texel->y;
+    point.metallic *= texel->z;
+  }
+  point.emission = emission(at, material);
+  return point;
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,27 @@
+#pragma once
+// What a ray hit: position, normals, and the material's values there.
+
+#include "renderer/trace/ray_tracer.h"
+
+namespace chiaro::renderer {
+
+struct SurfacePoint {
+  Vec3f position;
+  Vec3f geometric_normal;  // unit, on the side that the ray came from
+  Vec3f shading_normal;    // unit, never facing away from the ray
+  Vec3f base_color;        // linear
+  float metallic = 0, roughness = 1;
+  Vec3f emission;  // cd/m², from both sides
+  bool lambert = false;
+  bool front = true;  // the ray came from the front face
+};
+
+SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+
+// Alpha of a mesh at barycentric u, v of a triangle: factor × texture × vertex colour.
+float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+// Emission of a mesh at barycentric u, v of a triangle, cd/m².
+Vec3f surface_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,39 @@
+#pragma once
+// Illumination at surface points by unbiased path tracing: the reference for all that inverse lighting computes.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/core/control.h"
+#include "renderer/scene/light.h"
+#include "renderer/trace/ray_tracer.h"
+
+namespace chiaro::renderer {
+
+// A point just on its surface, seen from the side of the normal.
+struct SurfaceSample {
+  Vec3f position;
+  Vec3f normal;  // unit; shading normal: the cosine is taken with it
+};
+
+struct TraceOptions {
+  int samples = 256;  // paths per point or pixel
+  int bounces = -1;   // indirect bounces; 0 = direct only, -1 = until Russian roulette ends the path
+  std::uint64_t seed = 0;
+  bool scene_emission = true;  // the scene's emissive surfaces give light too
+};
+
+struct Illumination {
+  std::vector<Vec3f> value;           // cd/m²: irradiance / π, all bounces, the surface's own albedo left out
+  std::vector<Vec3f> standard_error;  // cd/m², of each value
+};
+
+// Illumination of each point under `lights` and the scene's emissive surfaces. Same result for any number of threads.
+Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
+                                const TraceOptions& options, const Control& control = {});
+
+// sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give.
+double relative_standard_error(const Illumination& illumination);
+
+}  // namespace chiaro::renderer

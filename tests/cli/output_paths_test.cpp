@@ -1,0 +1,65 @@
+#include "cli/output_paths.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "cli/usage_error.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CliOutputPaths : public testing::Test {
+ protected:
+  CliOutputPaths() : folder_(fs::path(testing::TempDir()) / "chiaro_output_paths") {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~CliOutputPaths() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+TEST_F(CliOutputPaths, ExtensionsDoNotMindCase) {
+  EXPECT_NO_THROW(require_extension("a.GLB", {".glb", ".gltf"}));
+  EXPECT_THROW(require_extension("a.json", {".glb", ".gltf"}), UsageError);
+  EXPECT_THROW(require_extension("glb", {".glb"}), UsageError);
+}
+
+TEST_F(CliOutputPaths, AskingWhetherAFileCanBeMadeLeavesNothing) {
+  require_writable(folder_ / "new.exr");
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(CliOutputPaths, WhatCannotBeMadeIsAnError) {
+  EXPECT_THROW(require_writable(folder_ / "missing" / "new.exr"), renderer::Error);
+  EXPECT_THROW(require_writable(folder_), renderer::Error);
+  std::ofstream(folder_ / "file") << "text";
+  EXPECT_THROW(require_writable(folder_ / "file" / "new.exr"), renderer::Error);
+  EXPECT_THROW(make_folder(folder_ / "file"), renderer::Error);
+  EXPECT_THROW(make_folder(folder_ / "file" / "below"), renderer::Error);
+}
+
+TEST_F(CliOutputPaths, FoldersAreMadeWithThoseAbove) {
+  make_folder(folder_ / "a" / "b");
+  make_folder(folder_ / "a" / "b");
+  EXPECT_TRUE(fs::is_empty(folder_ / "a" / "b"));
+}
+
+TEST_F(CliOutputPaths, NamesBesideKeepTheirStem) {
+  EXPECT_EQ(beside("x/lights.glb", ".json"), fs::path("x/lights.json"));
+  EXPECT_EQ(beside("Camera.001.exr", ".png"), fs::path("Camera.001.png"));
+}
+
+TEST_F(CliOutputPaths, NamesOfUsersBecomeFileNames) {
+  EXPECT_EQ(file_name_of("Camera.001"), "Camera.001");
+  EXPECT_EQ(file_name_of("../x y/z"), "_._x_y_z");
+  EXPECT_EQ(file_name_of(""), "unnamed");
+  EXPECT_EQ(file_name_of("Küche"), "Küche");
+}
+
+}  // namespace
+}  // namespace chiaro::cli

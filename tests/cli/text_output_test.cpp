@@ -1,0 +1,50 @@
+#include "cli/text_output.h"
+
+#include <gtest/gtest.h>
+
+#include "cli/progress.h"
+
+namespace chiaro::cli {
+namespace {
+
+TEST(CliTextOutput, RowsAreAligned) {
+  EXPECT_EQ(aligned_rows({{"a", "1"}, {"longer", "2"}}), "  a       1\n  longer  2\n");
+}
+
+TEST(CliTextOutput, TablesAlignToTheRight) {
+  EXPECT_EQ(table({{"light", "cd"}, {"1", "250"}}), "  light   cd\n  1      250\n");
+}
+
+TEST(CliTextOutput, SecondsReadAsPeopleSayThem) {
+  EXPECT_EQ(text_of_seconds(0.314), "0.31 s");
+  EXPECT_EQ(text_of_seconds(59.97), "1 min 00 s");
+  EXPECT_EQ(text_of_seconds(245), "4 min 05 s");
+  EXPECT_EQ(text_of_seconds(7500), "2 h 05 min");
+}
+
+TEST(CliTextOutput, BytesHaveDecimalUnits) {
+  EXPECT_EQ(text_of_bytes(12), "12 bytes");
+  EXPECT_EQ(text_of_bytes(1.5e9), "1.5 GB");
+}
+
+TEST(CliTextOutput, OneLineIsOneLine) { EXPECT_EQ(one_line("a\nb\tc\r\n"), "a b c"); }
+
+TEST(CliProgress, LineShowsStageAndPercent) {
+  EXPECT_EQ(progress_line("bake", 0.5, 0, 80), "bake [############............]  50 %");
+}
+
+TEST(CliProgress, TimeLeftComesFromTheTimeTaken) {
+  EXPECT_NE(progress_line("bake", 0.25, 10, 80).find("30.00 s left"), std::string::npos);
+}
+
+TEST(CliProgress, LineFitsTheTerminal) {
+  EXPECT_LT(progress_line("a stage with a rather long name", 0.5, 10, 20).size(), 20U);
+}
+
+TEST(CliProgress, FractionsBeyondTheirRangeDoNotBreakTheBar) {
+  EXPECT_EQ(progress_line("x", 1.5, 0, 80), "x [########################] 100 %");
+  EXPECT_EQ(progress_line("x", -1, 0, 80), "x [........................]   0 %");
+}
+
+}  // namespace
+}  // namespace chiaro::cli

@@ -1,0 +1,159 @@
+// Closed forms of light transport. Where a value is statistical, the bound is stated in standard errors and the seed is fixed.
+
+#include "renderer/trace/trace_illumination.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/sampler.h"
+#include "tests/support/code_scenes.h"
+
+namespace chiaro::renderer {
+namespace {
+
+using test::add_mesh;
+using test::lambert;
+using test::rectangle;
+
+Scene plane_scene(Vec3f albedo) {
+  Scene scene;
+  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, 10), lambert(albedo), "plane");
+  return scene;
+}
+
+TEST(TraceIllumination, PointLightOverPlaneIsIntensityCosineOverPiDistanceSquared) {
+  const Scene scene = plane_scene({0.5F, 0.5F, 0.5F});
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {0.3F, 2, -0.4F}, {10, 20, 5}}};
+  std::vector<SurfaceSample> points;
+  for (const Vec3f& p : scene.meshes[0].positions) points.push_back({p, {0, 1, 0}});
+  const Illumination result = trace_illumination(tracer, points, lights, {.samples = 4, .bounces = 0});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f d = Vec3f{0.3F, 2, -0.4F} - points[i].position;
+    const double expected = 10 * 2.0 / (double(kPi) * std::pow(double(length(d)), 3));
+    EXPECT_NEAR(result.value[i].x, expected, 1e-5 * expected);
+    EXPECT_NEAR(result.value[i].y, 2 * expected, 2e-5 * expected);
+    EXPECT_EQ(result.standard_error[i].x, 0);
+  }
+}
+
+TEST(TraceIllumination, SpotAndDirectionalLightsFollowTheirDefinitions) {
+  const Scene scene = plane_scene({0.5F, 0.5F, 0.5F});
+  const RayTracer tracer(scene);
+  const std::vector<SurfaceSample> points{{{0, 0, 0}, {0, 1, 0}}, {{1.5F, 0, 0}, {0, 1, 0}}};
+  const Lights spot{SpotLight{"", {0, 2, 0}, {0, -1, 0}, {8, 8, 8}, 0.1F, 0.5F}};
+  const auto by_spot = trace_illumination(tracer, points, spot, {.samples = 1, .bounces = 0});
+  EXPECT_NEAR(by_spot.value[0].x, 8 / (4 * kPi), 1e-6);
+  EXPECT_EQ(by_spot.value[1].x, 0);  // 36.9 degrees from the axis, outside the cone of 28.6
+  const Lights sun{DirectionalLight{"", normalize(Vec3f{0, -1, 1}), {100, 100, 100}}};
+  const auto by_sun = trace_illumination(tracer, points, sun, {.samples = 1, .bounces = 0});
+  EXPECT_NEAR(by_sun.value[0].x, 100 * std::sqrt(0.5F) / kPi, 1e-4);
+}
+
+TEST(TraceIllumination, FurnaceGivesEmissionOverOneMinusAlbedo) {
+  // Inside a closed surface of emission e and albedo a, radiance and illumination are e / (1 - a) everywhere.
+  for (const float albedo : {0.0F, 0.5F, 0.8F}) {
+    Scene scene;
+    add_mesh(scene, test::sphere({0, 0, 0}, 2, 32, true), lambert({albedo, albedo, albedo}, {1, 1, 1}), "furnace");
+    const RayTracer tracer(scene);
+    const std::vector<SurfaceSample> points{{{0.3F, 0.2F, 0.1F}, {0, 1, 0}}, {{-1, 0.4F, 0.6F}, normalize(Vec3f{1, 1, 0})}};
+    const auto result = trace_illumination(tracer, points, {}, {.samples = 4096, .seed = 3});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // Four standard errors of 7 degrees of freedom, p < 0.6 %; and half a percent for roulette's rare long paths.
+      const double bound = 4 * double(result.standard_error[i].x) + 0.005 / (1 - double(albedo));
+      EXPECT_NEAR(result.value[i].x, 1 / (1 - albedo), bound) << "albedo " << albedo;
+    }
+  }
+}
+
+TEST(TraceIllumination, SphereAroundALightIsUniform) {
+  // At radius r around a light of I cd: direct I / (π r²); each bounce multiplies the mean by the albedo.
+  const float radius = 2, albedo = 0.6F;
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, radius, 64, true), lambert({albedo, albedo, albedo}), "sphere");
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {0, 0, 0}, {10, 10, 10}}};
+  const Vec3f n = normalize(Vec3f{0.3F, 0.5F, -0.7F});
+  const std::vector<SurfaceSample> points{{(-0.998F * radius) * n, n}};
+  const double direct = 10 / (double(kPi) * radius * radius);
+  double expected = 0;
+  for (int bounces = 0; bounces <= 4; ++bounces) {
+    expected += direct * std::pow(double(albedo), bounces);
+    const auto result = trace_illumination(tracer, points, lights, {.samples = 2048, .bounces = bounces, .seed = 11});
+    EXPECT_NEAR(result.value[0].x, expected, 4 * double(result.standard_error[0].x) + 0.006 * expected) << bounces;
+  }
+}
+
+TEST(TraceIllumination, ClosedBoxConservesEnergy) {
+  // Light that a diffuse box absorbs equals what its lamp emits: (1 - a) ∫ E dA = 4 π I.
+  const float albedo = 0.5F;
+  Scene scene;
+  add_mesh(scene, test::room({3, 2, 4}, 8), lambert({albedo, albedo, albedo}), "room");
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {1.2F, 1.1F, 1.7F}, {5, 5, 5}}};
+  const Mesh& mesh = scene.meshes[0];
+  std::vector<SurfaceSample> points;
+  std::vector<double> areas;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const Vec3f e1 = mesh.positions[b] - mesh.positions[a], e2 = mesh.positions[c] - mesh.positions[a];
+    for (std::uint32_t k = 0; k < 16; ++k) {  // stratified points per triangle
+      Sampler sampler(1, t, k);
+      Vec2f u = sampler.next_2d();
+      if (u.x + u.y > 1) u = {1 - u.x, 1 - u.y};
+      points.push_back({mesh.positions[a] + u.x * e1 + u.y * e2, mesh.normals[a]});
+      areas.push_back(0.5 * double(length(cross(e1, e2))) / 16);
+    }
+  }
+  const auto result = trace_illumination(tracer, points, lights, {.samples = 16, .seed = 5});
+  double absorbed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) absorbed += (1 - double(albedo)) * double(kPi * result.value[i].x) * areas[i];
+  EXPECT_NEAR(absorbed / (4 * double(kPi) * 5), 1, 0.01);
+}
+
+TEST(TraceIllumination, EmissivePanelMatchesItsFormFactor) {
+  // A unit square emitter straight above a point, parallel, at distance h: Lambert's formula for a centred square.
+  Scene scene;
+  add_mesh(scene, rectangle({-0.5F, 1, -0.5F}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {3, 2, 1}), "panel");
+  const RayTracer tracer(scene);
+  const std::vector<SurfaceSample> points{{{0, 0, 0}, {0, 1, 0}}};
+  const double a = 0.5;  // half side over distance
+  const double form_factor = 4 * (2 / (2 * double(kPi))) * (a / std::sqrt(1 + a * a)) * std::atan(a / std::sqrt(1 + a * a));
+  const auto result = trace_illumination(tracer, points, {}, {.samples = 4096, .bounces = 0, .seed = 2});
+  EXPECT_NEAR(result.value[0].x, 3 * form_factor, 4 * double(result.standard_error[0].x) + 1e-4);
+  EXPECT_NEAR(result.value[0].z, 1 * form_factor, 4 * double(result.standard_error[0].z) + 1e-4);
+}
+
+TEST(TraceIllumination, ErrorShrinksAndCoversTheTruth) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {3, 2, 3}, {10, 10, 10}}};
+  std::vector<SurfaceSample> points;
+  for (int i = 0; i < 100; ++i) points.push_back({{0.1F + 0.038F * float(i), 0, 3}, {0, 1, 0}});
+  const auto reference = trace_illumination(tracer, points, lights, {.samples = 8192, .seed = 100});
+  const auto coarse = trace_illumination(tracer, points, lights, {.samples = 64, .seed = 200});
+  double chi_squared = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double z = double(coarse.value[i].x - reference.value[i].x) / std::max(1e-9, double(coarse.standard_error[i].x));
+    chi_squared += std::min(z * z, 25.0);
+  }
+  // z follows Student's t of 7 degrees of freedom: E z² = 1.4. Far from 100 × 1.4 only if the stated errors are wrong.
+  EXPECT_GT(chi_squared, 60);
+  EXPECT_LT(chi_squared, 300);
+}
+
+TEST(TraceIllumination, SameBytesForAnyNumberOfThreads) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {3, 2, 3}, {10, 10, 10}}};
+  std::vector<SurfaceSample> points;
+  for (int i = 0; i < 500; ++i) points.push_back({{0.1F + 0.0075F * float(i), 0, 3}, {0, 1, 0}});
+  std::vector<Illumination> results;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    results.push_back(trace_illumination(tracer, points, lights, {.samples = 16, .seed = 1}));
+  }
+  EXPECT_EQ(results[0].value, results[1].value);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
