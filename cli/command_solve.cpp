@@ -31,7 +31,7 @@ inverse::SolveOptions with_report(inverse::SolveOptions options, const std::stri
 void require_inside(const inverse::LightGrid& grid, const renderer::Box3f& region, const std::string& cache) {
   const float tolerance = 1e-4F * (1 + region.diagonal());
   const renderer::Vec3f room{tolerance, tolerance, tolerance};
-  const renderer::Box3f grown{region.min - room, region.max + room}, lights = grid.region();
+  const renderer::Box3f grown{region.min - room, region.max + room}, lights = grid.region;
   if (grown.contains(lights.min) && grown.contains(lights.max)) return;
   throw renderer::Error({cache, "grid", "reaches beyond --region", "a cache baked with the same --region"});
 }

@@ -91,7 +91,7 @@ inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOpt
 
 void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
   if (stage.lights.empty() || choices.keep_lights) return;
-  session.warn(fmt::format("{}: its {} lights are taken out (--keep-lights leaves them lit)", stage.scene->path,
+  session.warn(fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path,
                            stage.lights.size()));
 }
 

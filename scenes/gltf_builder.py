@@ -1,4 +1,4 @@
-"""Builds a scene of shapes, cameras and point lights, and writes it as a binary glTF 2.0 file, always the same bytes."""
+"""Builds a scene of shapes, cameras and point lights and writes it as a binary glTF 2.0 file, always the same."""
 
 import json
 import math
@@ -53,8 +53,11 @@ class Scene:
 
     def material(self, name, color, **options):
         """color: linear Rec.709 albedo. options: roughness (1), metallic (0), texture (PNG bytes)."""
-        surface = {"baseColorFactor": [*color, 1.0], "metallicFactor": options.get("metallic", 0.0),
-                   "roughnessFactor": options.get("roughness", 1.0)}
+        surface = {
+            "baseColorFactor": [*color, 1.0],
+            "metallicFactor": options.get("metallic", 0.0),
+            "roughnessFactor": options.get("roughness", 1.0),
+        }
         if "texture" in options:
             surface["baseColorTexture"] = {"index": len(self.images)}
             self.images.append(options["texture"])
@@ -79,15 +82,35 @@ class Scene:
         return self._node({"name": name, "mesh": mesh, **_transform(**placement)}, parent)
 
     def camera(self, name, eye, target, vertical_fov, aspect_ratio):
-        self.cameras.append({"name": name, "type": "perspective", "perspective": {
-            "yfov": round(math.radians(vertical_fov), 6), "aspectRatio": round(aspect_ratio, 6), "znear": 0.01}})
-        self._node({"name": name, "camera": len(self.cameras) - 1, "translation": tidy(eye),
-                    "rotation": tidy(look_at_quaternion(eye, target), 8)})
+        self.cameras.append(
+            {
+                "name": name,
+                "type": "perspective",
+                "perspective": {
+                    "yfov": round(math.radians(vertical_fov), 6),
+                    "aspectRatio": round(aspect_ratio, 6),
+                    "znear": 0.01,
+                },
+            }
+        )
+        self._node(
+            {
+                "name": name,
+                "camera": len(self.cameras) - 1,
+                "translation": tidy(eye),
+                "rotation": tidy(look_at_quaternion(eye, target), 8),
+            }
+        )
 
     def point_light(self, name, position, color, candela):
         self.lights.append({"name": name, "type": "point", "color": list(color), "intensity": candela})
-        self._node({"name": name, "translation": tidy(position),
-                    "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
+        self._node(
+            {
+                "name": name,
+                "translation": tidy(position),
+                "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}},
+            }
+        )
 
     def _node(self, node, parent=None):
         self.nodes.append(node)
@@ -122,7 +145,9 @@ class Scene:
             "scene": 0,
             "scenes": [{"name": self.title, "nodes": [i for i in range(len(self.nodes)) if i not in self.parents]}],
             "nodes": self.nodes,
-            "meshes": [{"name": self.shapes[s][0], "primitives": [{**shapes[s], "material": m}]} for s, m in self.meshes],
+            "meshes": [
+                {"name": self.shapes[s][0], "primitives": [{**shapes[s], "material": m}]} for s, m in self.meshes
+            ],
             "materials": self.materials,
             "cameras": self.cameras,
         }
@@ -133,10 +158,16 @@ class Scene:
         if self.lights:
             document["extensionsUsed"] = ["KHR_lights_punctual"]
             document["extensions"] = {"KHR_lights_punctual": {"lights": self.lights}}
-        document |= {"accessors": data.accessors, "bufferViews": data.views, "buffers": [{"byteLength": len(data.bytes)}]}
+        document |= {
+            "accessors": data.accessors,
+            "bufferViews": data.views,
+            "buffers": [{"byteLength": len(data.bytes)}],
+        }
         _write_glb(path, document, bytes(data.bytes))
-        print(f"{Path(path).name}: {sum(1 for _ in self.world_triangles())} triangles in {len(self.nodes)} nodes, "
-              f"{Path(path).stat().st_size} bytes")
+        print(
+            f"{Path(path).name}: {sum(1 for _ in self.world_triangles())} triangles in {len(self.nodes)} nodes, "
+            f"{Path(path).stat().st_size} bytes"
+        )
 
 
 def _transform(at=None, turn=None, scale=None):
@@ -164,8 +195,9 @@ class _Buffer:
     def floats(self, rows, kind, bounded=False):
         flat = [v for row in rows for v in tidy(row)]
         packed = struct.pack(f"<{len(flat)}f", *flat)
-        self.accessors.append({"bufferView": self.view(packed, VERTICES), "componentType": FLOAT, "count": len(rows),
-                               "type": kind})
+        self.accessors.append(
+            {"bufferView": self.view(packed, VERTICES), "componentType": FLOAT, "count": len(rows), "type": kind}
+        )
         if bounded:
             columns = list(zip(*[iter(struct.unpack(f"<{len(flat)}f", packed))] * 3))
             self.accessors[-1] |= {"min": [min(c) for c in zip(*columns)], "max": [max(c) for c in zip(*columns)]}
@@ -173,8 +205,10 @@ class _Buffer:
 
     def shape(self, name, shape):
         assert len(shape.normals) == len(shape.positions) and len(shape.uvs) in (0, len(shape.positions)), name
-        attributes = {"POSITION": self.floats(shape.positions, "VEC3", bounded=True),
-                      "NORMAL": self.floats(shape.normals, "VEC3")}
+        attributes = {
+            "POSITION": self.floats(shape.positions, "VEC3", bounded=True),
+            "NORMAL": self.floats(shape.normals, "VEC3"),
+        }
         if shape.uvs:
             attributes["TEXCOORD_0"] = self.floats(shape.uvs, "VEC2")
         flat = [i for t in shape.triangles for i in t]

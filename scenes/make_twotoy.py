@@ -10,11 +10,21 @@ WIDTH, DEPTH, HEIGHT = 5.0, 5.4, 3.0  # metres; the room stands on y = 0, centre
 SIDES = (("left", -1), ("right", 1))
 
 COLORS = {
-    "floor": (0.55, 0.42, 0.30), "ceiling": (0.80, 0.79, 0.76), "blue wall": (0.42, 0.56, 0.68),
-    "cream wall": (0.76, 0.70, 0.58), "fur": (0.45, 0.24, 0.10), "light fur": (0.72, 0.50, 0.29),
-    "dark": (0.035, 0.03, 0.03), "red": (0.62, 0.07, 0.05), "royal blue": (0.08, 0.14, 0.45),
-    "gold": (0.78, 0.53, 0.12), "white": (0.80, 0.79, 0.76), "skin": (0.78, 0.52, 0.38),
-    "pink": (0.75, 0.33, 0.32), "mint": (0.35, 0.66, 0.52), "wood": (0.60, 0.40, 0.22),
+    "floor": (0.55, 0.42, 0.30),
+    "ceiling": (0.80, 0.79, 0.76),
+    "blue wall": (0.42, 0.56, 0.68),
+    "cream wall": (0.76, 0.70, 0.58),
+    "fur": (0.45, 0.24, 0.10),
+    "light fur": (0.72, 0.50, 0.29),
+    "dark": (0.035, 0.03, 0.03),
+    "red": (0.62, 0.07, 0.05),
+    "royal blue": (0.08, 0.14, 0.45),
+    "gold": (0.78, 0.53, 0.12),
+    "white": (0.80, 0.79, 0.76),
+    "skin": (0.78, 0.52, 0.38),
+    "pink": (0.75, 0.33, 0.32),
+    "mint": (0.35, 0.66, 0.52),
+    "wood": (0.60, 0.40, 0.22),
 }
 
 
@@ -66,12 +76,24 @@ def _bear(scene, paint, shapes):
     for side, s in SIDES:
         part(f"{side} eye", "bead", "dark", at=(s * 0.125, 1.43, 0.275), scale=0.034)
         part(f"{side} ear", "ball", "fur", at=(s * 0.27, 1.61, 0), turn=(0, 0, -s * 35), scale=(0.125, 0.13, 0.065))
-        part(f"{side} inner ear", "bead", "light fur", at=(s * 0.275, 1.61, 0.04), turn=(0, 0, -s * 35),
-             scale=(0.08, 0.085, 0.045))
+        part(
+            f"{side} inner ear",
+            "bead",
+            "light fur",
+            at=(s * 0.275, 1.61, 0.04),
+            turn=(0, 0, -s * 35),
+            scale=(0.08, 0.085, 0.045),
+        )
         part(f"{side} leg", "limb", "fur", at=(s * 0.22, 0.26, 0.06), turn=(-12, 0, s * 6), scale=(0.25, 0.25, 0.25))
         part(f"{side} foot", "ball", "fur", at=(s * 0.24, 0.115, 0.17), turn=(0, s * 14, 0), scale=(0.145, 0.115, 0.22))
-        part(f"{side} sole", "bead", "light fur", at=(s * 0.285, 0.125, 0.345), turn=(0, s * 14, 0),
-             scale=(0.085, 0.075, 0.05))
+        part(
+            f"{side} sole",
+            "bead",
+            "light fur",
+            at=(s * 0.285, 0.125, 0.345),
+            turn=(0, s * 14, 0),
+            scale=(0.085, 0.075, 0.05),
+        )
         part(f"{side} bow", "cone", "red", at=(s * 0.16, 1.06, 0.29), turn=(0, 0, s * 90), scale=(0.15, 0.15, 0.10))
     part("left arm", "limb", "fur", at=(-0.43, 0.80, 0.08), turn=(-25, 0, -28), scale=(0.21, 0.26, 0.21))
     part("left paw", "ball", "light fur", at=(-0.54, 0.58, 0.19), scale=0.118)
@@ -92,8 +114,18 @@ def _soldier(scene, paint, shapes):
         scene.place(f"soldier {name}", _known(shapes, shape), paint[color], soldier, **placement)
 
     part("stand", _stand(), "wood")
-    jacket = curve([(0.235, 0.78), (0.205, 0.90), (0.19, 0.98), (0.215, 1.12), (0.235, 1.24), (0.225, 1.33),
-                    (0.17, 1.40), (0.09, 1.43)])
+    jacket = curve(
+        [
+            (0.235, 0.78),
+            (0.205, 0.90),
+            (0.19, 0.98),
+            (0.215, 1.12),
+            (0.235, 1.24),
+            (0.225, 1.33),
+            (0.17, 1.40),
+            (0.09, 1.43),
+        ]
+    )
     part("jacket", revolve([line((0, 0.78), (0.235, 0.78)), jacket, line((0.09, 1.43), (0, 1.43))], 40), "red")
     part("belt", torus(0.195, 0.028, 36, 12), "white", at=(0, 0.95, 0))
     part("buckle", rounded_box((-0.05, -0.04, -0.02), (0.05, 0.04, 0.02), 0.012), "gold", at=(0, 0.95, 0.225))
@@ -106,11 +138,24 @@ def _soldier(scene, paint, shapes):
         part(f"{side} boot", _boot(), "dark", at=(s * 0.11, 0.08, 0))
         part(f"{side} toe", "bead", "dark", at=(s * 0.11, 0.125, 0.09), scale=(0.078, 0.045, 0.12))
         part(f"{side} leg", "cylinder", "royal blue", at=(s * 0.11, 0.33, 0), scale=(0.165, 0.47, 0.165))
-        part(f"{side} epaulette", "bead", "gold", at=(s * 0.245, 1.325, 0), turn=(0, 0, -s * 18), scale=(0.105, 0.04, 0.10))
+        part(
+            f"{side} epaulette",
+            "bead",
+            "gold",
+            at=(s * 0.245, 1.325, 0),
+            turn=(0, 0, -s * 18),
+            scale=(0.105, 0.04, 0.10),
+        )
         part(f"{side} eye", "bead", "dark", at=(s * 0.057, 1.605, 0.132), scale=0.019)
         part(f"{side} cheek", "bead", "pink", at=(s * 0.085, 1.545, 0.112), scale=(0.032, 0.03, 0.02))
-        part(f"{side} moustache", "limb", "dark", at=(s * 0.045, 1.522, 0.142), turn=(0, s * 20, s * 68),
-             scale=(0.03, 0.045, 0.026))
+        part(
+            f"{side} moustache",
+            "limb",
+            "dark",
+            at=(s * 0.045, 1.522, 0.142),
+            turn=(0, s * 20, s * 68),
+            scale=(0.03, 0.045, 0.026),
+        )
     part("left arm", "limb", "red", at=(-0.31, 1.13, 0), turn=(0, 0, -10), scale=(0.125, 0.25, 0.125))
     part("left cuff", "cylinder", "gold", at=(-0.335, 0.90, 0), turn=(0, 0, -10), scale=(0.15, 0.07, 0.15))
     part("left hand", "bead", "skin", at=(-0.345, 0.855, 0), scale=0.07)
@@ -118,8 +163,11 @@ def _soldier(scene, paint, shapes):
     part("right forearm", "limb", "red", at=(0.329, 1.42, 0.072), turn=(12, 0, 40), scale=(0.12, 0.17, 0.12))
     part("right cuff", "cylinder", "gold", at=(0.272, 1.487, 0.092), turn=(12, 0, 40), scale=(0.145, 0.06, 0.145))
     part("right hand", "bead", "skin", at=(0.183, 1.59, 0.122), turn=(12, 0, 40), scale=(0.045, 0.075, 0.065))
-    shako = [line((0, 1.64), (0.165, 1.64)), line((0.165, 1.64), (0.195, 2.0)),
-             arc((0.17, 2.0), 0.025, 0, 90, 4) + line((0.17, 2.025), (0, 2.025))]
+    shako = [
+        line((0, 1.64), (0.165, 1.64)),
+        line((0.165, 1.64), (0.195, 2.0)),
+        arc((0.17, 2.0), 0.025, 0, 90, 4) + line((0.17, 2.025), (0, 2.025)),
+    ]
     part("hat", revolve(shako, 40), "dark")
     part("hat band", torus(0.168, 0.016, 36, 10), "gold", at=(0, 1.665, 0))
     part("visor", "bead", "dark", at=(0, 1.655, 0.13), turn=(14, 0, 0), scale=(0.125, 0.014, 0.11))

@@ -63,14 +63,16 @@ def quad(a, b, c, d, uvs=()):
 
 def box(low, high):
     (x0, y0, z0), (x1, y1, z1) = low, high
-    return joined([
-        quad((x1, y0, z1), (x1, y0, z0), (x1, y1, z0), (x1, y1, z1)),
-        quad((x0, y0, z0), (x0, y0, z1), (x0, y1, z1), (x0, y1, z0)),
-        quad((x0, y1, z1), (x1, y1, z1), (x1, y1, z0), (x0, y1, z0)),
-        quad((x0, y0, z0), (x1, y0, z0), (x1, y0, z1), (x0, y0, z1)),
-        quad((x0, y0, z1), (x1, y0, z1), (x1, y1, z1), (x0, y1, z1)),
-        quad((x1, y0, z0), (x0, y0, z0), (x0, y1, z0), (x1, y1, z0)),
-    ])
+    return joined(
+        [
+            quad((x1, y0, z1), (x1, y0, z0), (x1, y1, z0), (x1, y1, z1)),
+            quad((x0, y0, z0), (x0, y0, z1), (x0, y1, z1), (x0, y1, z0)),
+            quad((x0, y1, z1), (x1, y1, z1), (x1, y1, z0), (x0, y1, z0)),
+            quad((x0, y0, z0), (x1, y0, z0), (x1, y0, z1), (x0, y0, z1)),
+            quad((x0, y0, z1), (x1, y0, z1), (x1, y1, z1), (x0, y1, z1)),
+            quad((x1, y0, z0), (x0, y0, z0), (x0, y1, z0), (x1, y1, z0)),
+        ]
+    )
 
 
 def wall_with_opening(outer, inner, depth):
@@ -93,8 +95,14 @@ def icosphere(subdivisions):
     rings = [(1 / math.sqrt(5), 0), (-1 / math.sqrt(5), 36)]
     points = [(0.0, 1.0, 0.0)]
     for y, turn in rings:
-        points += [(math.sqrt(1 - y * y) * math.cos(math.radians(72 * i + turn)), y,
-                    math.sqrt(1 - y * y) * math.sin(math.radians(72 * i + turn))) for i in range(5)]
+        points += [
+            (
+                math.sqrt(1 - y * y) * math.cos(math.radians(72 * i + turn)),
+                y,
+                math.sqrt(1 - y * y) * math.sin(math.radians(72 * i + turn)),
+            )
+            for i in range(5)
+        ]
     points.append((0.0, -1.0, 0.0))
     triangles = []
     for i in range(5):
@@ -196,8 +204,9 @@ def _stitch(shape, low, high, segments):
 
 def cylinder(radius, height, segments=32):
     """Standing on y = 0."""
-    return revolve([line((0, 0), (radius, 0)), line((radius, 0), (radius, height)), line((radius, height), (0, height))],
-                   segments)
+    return revolve(
+        [line((0, 0), (radius, 0)), line((radius, 0), (radius, height)), line((radius, height), (0, height))], segments
+    )
 
 
 def cone(radius, height, segments=32):
@@ -207,7 +216,9 @@ def cone(radius, height, segments=32):
 def capsule(radius, length, segments=24):
     """Around the y axis, its two centres at y = ±length / 2."""
     steps = segments // 4
-    return revolve([arc((0, -length / 2), radius, -90, 0, steps) + arc((0, length / 2), radius, 0, 90, steps)], segments)
+    return revolve(
+        [arc((0, -length / 2), radius, -90, 0, steps) + arc((0, length / 2), radius, 0, 90, steps)], segments
+    )
 
 
 def torus(ring_radius, tube_radius, segments=40, tube_segments=16):
@@ -217,8 +228,15 @@ def torus(ring_radius, tube_radius, segments=40, tube_segments=16):
 def tube(bottom_radius, top_radius, height, thickness, segments=40):
     """A conical shade or pipe, open at both ends, its wall `thickness` thick; radii are the outer ones."""
     b, t, w = bottom_radius, top_radius, thickness
-    return revolve([line((b, 0), (t, height)), line((t, height), (t - w, height)), line((t - w, height), (b - w, 0)),
-                    line((b - w, 0), (b, 0))], segments)
+    return revolve(
+        [
+            line((b, 0), (t, height)),
+            line((t, height), (t - w, height)),
+            line((t - w, height), (b - w, 0)),
+            line((b - w, 0), (b, 0)),
+        ],
+        segments,
+    )
 
 
 def rounded_box(low, high, radius, steps=4, splits=1):
@@ -243,7 +261,9 @@ def rounded_box(low, high, radius, steps=4, splits=1):
             for j in range(last):
                 for level in (0, last):
                     corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
-                    a, b, c, d = (vertex(*_on_axis(axis, level, u, v)) for u, v in (corners if level else corners[::-1]))
+                    a, b, c, d = (
+                        vertex(*_on_axis(axis, level, u, v)) for u, v in (corners if level else corners[::-1])
+                    )
                     shape.triangles += [(a, b, c), (a, c, d)]
     return shape
 
@@ -278,10 +298,17 @@ def sheet(point, columns, rows, thickness):
             a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
             front.triangles += [(a, b, c), (a, c, d)]
     with_smooth_normals(front)
-    back = Shape([subtract(p, scaled(n, thickness)) for p, n in zip(front.positions, front.normals)],
-                 [scaled(n, -1) for n in front.normals], [(a, c, b) for a, b, c in front.triangles])
-    border = ([at(i, 0) for i in range(columns)] + [at(columns, j) for j in range(rows)] +
-              [at(i, rows) for i in range(columns, 0, -1)] + [at(0, j) for j in range(rows, 0, -1)])
+    back = Shape(
+        [subtract(p, scaled(n, thickness)) for p, n in zip(front.positions, front.normals)],
+        [scaled(n, -1) for n in front.normals],
+        [(a, c, b) for a, b, c in front.triangles],
+    )
+    border = (
+        [at(i, 0) for i in range(columns)]
+        + [at(columns, j) for j in range(rows)]
+        + [at(i, rows) for i in range(columns, 0, -1)]
+        + [at(0, j) for j in range(rows, 0, -1)]
+    )
     rim = joined([_rim_quad(front, back, a, b) for a, b in zip(border, border[1:] + border[:1])])
     return joined([front, back, rim])
 
@@ -303,8 +330,13 @@ def pillow(width, height, depth, steps=16):
             known[key] = len(shape.positions)
             u, v = 2 * i / steps - 1, 2 * j / steps - 1
             bulge = math.sqrt((1 - u**4) * (1 - v**4))
-            shape.positions.append((width / 2 * u * (0.93 + 0.07 * v * v), key[2] * height / 2 * bulge,
-                                    depth / 2 * v * (0.93 + 0.07 * u * u)))
+            shape.positions.append(
+                (
+                    width / 2 * u * (0.93 + 0.07 * v * v),
+                    key[2] * height / 2 * bulge,
+                    depth / 2 * v * (0.93 + 0.07 * u * u),
+                )
+            )
         return known[key]
 
     for side in (1, -1):

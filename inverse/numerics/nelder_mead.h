@@ -21,9 +21,9 @@ struct NelderMeadResult {
   bool converged = false;
 };
 
-// Downhill simplex from x0 with initial edges step[i] (> 0), adaptive coefficients in high dimension; bounds lower ≤ x ≤
-// upper by projection. Values that are not finite count as +∞.
-// Source: Nelder & Mead, A simplex method for function minimization, 1965; coefficients of Gao & Han, 2012.
+// Downhill simplex from x0 with initial edges step[i] (> 0), adaptive coefficients in high dimension; bounds lower ≤ x
+// ≤ upper by projection. Values that are not finite count as +∞. Source: Nelder & Mead, A simplex method for function
+// minimization, 1965; coefficients of Gao & Han, 2012.
 NelderMeadResult nelder_mead(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x0,
                              const Eigen::VectorXd& step, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                              const NelderMeadOptions& options = {});

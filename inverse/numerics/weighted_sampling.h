@@ -7,8 +7,9 @@
 namespace chiaro::inverse::numerics {
 
 // `count` distinct indices drawn without replacement with probabilities proportional to weights (≥ 0, finite; those of
-// weight 0 only when no others are left, never if `count` can be met without them), ascending. A function of the arguments alone.
-// Source: Efraimidis & Spirakis, Weighted random sampling with a reservoir, 2006 (the largest of u^(1/w)).
+// weight 0 only when no others are left, never if `count` can be met without them), ascending. A function of the
+// arguments alone. Source: Efraimidis & Spirakis, Weighted random sampling with a reservoir, 2006 (the largest of
+// u^(1/w)).
 std::vector<std::size_t> sample_without_replacement(std::span<const double> weights, std::size_t count,
                                                     std::uint64_t seed);
 

@@ -25,9 +25,17 @@ std::size_t node_at(const std::array<std::size_t, 3>& c, const std::array<int, 3
   return c[0] + std::size_t(counts[0]) * (c[1] + std::size_t(counts[1]) * c[2]);
 }
 
-Eigen::Vector3d grid_position(const LightGrid& grid, const std::array<std::size_t, 3>& at, double fraction) {
+// Fine nodes stand in the middle of the grid's cells, on their faces and on the region's border: fine node 2 i + 1 is
+// coarse node i. An axis along which the region is flat has one.
+int fine_count(const LightGrid& grid, int axis) { return grid.spacing[axis] > 0 ? 2 * grid.counts[axis] + 1 : 1; }
+
+long fine_of(std::size_t coarse, int step, int fine_nodes) {
+  return fine_nodes == 1 ? step : 2 * long(coarse) + 1 + step;
+}
+
+Eigen::Vector3d fine_position(const LightGrid& grid, const std::array<std::size_t, 3>& fine) {
   Eigen::Vector3d p;
-  for (int a = 0; a < 3; ++a) p[a] = double(grid.origin[a]) + fraction * double(at[a]) * double(grid.spacing[a]);
+  for (int a = 0; a < 3; ++a) p[a] = double(grid.region.min[a]) + 0.5 * double(fine[a]) * double(grid.spacing[a]);
   return p;
 }
 
@@ -47,7 +55,8 @@ UnityLights spread_coarsely(const LightResponse& response) {
     if (!taken || grid.light_of_node[node] < 0) continue;
     const auto light = std::size_t(grid.light_of_node[node]);
     spread.nodes.push_back(node);
-    spread.lights.push_back({grid_position(grid, c, 1), Eigen::Array3d::Ones()});
+    const Vec3f p = grid.positions[light];
+    spread.lights.push_back({{p.x, p.y, p.z}, Eigen::Array3d::Ones()});
     spread.columns.push_back(response.grid_column(light));
   }
   return spread;
@@ -64,7 +73,8 @@ UnityLights spread_finely(const LightResponse& response, const UnityLights& surv
     for (int dz = -reach; dz <= reach; ++dz) {
       for (int dy = -reach; dy <= reach; ++dy) {
         for (int dx = -reach; dx <= reach; ++dx) {
-          const std::array<long, 3> fine{2 * long(c[0]) + dx, 2 * long(c[1]) + dy, 2 * long(c[2]) + dz};
+          const std::array<long, 3> fine{fine_of(c[0], dx, lattice[0]), fine_of(c[1], dy, lattice[1]),
+                                         fine_of(c[2], dz, lattice[2])};
           bool inside = true;
           for (int a = 0; a < 3; ++a) inside = inside && fine[a] >= 0 && fine[a] < lattice[a];
           if (inside)
@@ -76,7 +86,7 @@ UnityLights spread_finely(const LightResponse& response, const UnityLights& surv
   UnityLights spread;
   for (const std::size_t node : nodes) {
     spread.nodes.push_back(node);
-    spread.lights.push_back({grid_position(grid, coordinates(node, lattice), 0.5), Eigen::Array3d::Ones()});
+    spread.lights.push_back({fine_position(grid, coordinates(node, lattice)), Eigen::Array3d::Ones()});
   }
   spread.columns = evaluate_columns(response, spread.lights, VisibilitySource::kTraced);
   return spread;
@@ -117,7 +127,7 @@ DistributionRound solve_and_delete(const Observations& observations, UnityLights
 LightDistribution estimate_light_distribution(const LightResponse& response, const Observations& observations,
                                               double weak_light) {
   LightDistribution distribution;
-  for (int a = 0; a < 3; ++a) distribution.lattice_counts[a] = 2 * response.grid().counts[a] - 1;
+  for (int a = 0; a < 3; ++a) distribution.lattice_counts[a] = fine_count(response.grid(), a);
   UnityLights lights = spread_coarsely(response);
   distribution.rounds[0] = solve_and_delete(observations, lights, weak_light);
   lights = spread_finely(response, lights, distribution.lattice_counts);

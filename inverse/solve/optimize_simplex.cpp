@@ -23,7 +23,7 @@ SimplexOptimum optimize_simplex(const LightResponse& response, const Observation
                                 const LightEstimates& start) {
   const auto n = Eigen::Index(6 * start.size());
   Eigen::VectorXd x(n), step(n), lower(n), upper(n);
-  const Box3f region = response.grid().region();
+  const Box3f region = response.grid().region;
   double brightest = 0;
   for (const LightEstimate& light : start) brightest = std::max(brightest, light.intensity.maxCoeff());
   for (std::size_t j = 0; j < start.size(); ++j) {

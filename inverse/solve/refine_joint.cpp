@@ -15,8 +15,9 @@ constexpr int kLightParameters = 6;  // x, y, z (metres), red, green, blue (cand
 // Residuals of all receivers and channels; one parameter block per light.
 class IlluminationResiduals final : public ceres::CostFunction {
  public:
-  IlluminationResiduals(const LightResponse& response, const Observations& observations, std::size_t light_count)
-      : response_(response), observations_(observations), light_count_(light_count) {
+  IlluminationResiduals(const LightResponse& response, const Observations& observations,
+                        const std::vector<Column>& corrections, std::size_t light_count)
+      : response_(response), observations_(observations), corrections_(corrections), light_count_(light_count) {
     set_num_residuals(int(3 * observations.wanted.rows()));
     for (std::size_t j = 0; j < light_count; ++j) mutable_parameter_block_sizes()->push_back(kLightParameters);
   }
@@ -31,6 +32,7 @@ class IlluminationResiduals final : public ceres::CostFunction {
       } else {
         columns[j].value = response_.evaluate(position, VisibilitySource::kTraced);
       }
+      if (!corrections_.empty()) columns[j].value += corrections_[j];
     });
     Eigen::Map<Column> out(residuals, m, 3);
     out = -observations_.wanted;
@@ -62,6 +64,7 @@ class IlluminationResiduals final : public ceres::CostFunction {
 
   const LightResponse& response_;
   const Observations& observations_;
+  const std::vector<Column>& corrections_;
   std::size_t light_count_;
 };
 
@@ -110,8 +113,9 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
     blocks.push_back(parameters[j].data());
   }
   ceres::Problem problem;
-  problem.AddResidualBlock(new IlluminationResiduals(response, observations, start.size()), nullptr, blocks);
-  for (double* block : blocks) set_bounds(problem, block, response.grid().region());
+  problem.AddResidualBlock(new IlluminationResiduals(response, observations, options.corrections, start.size()),
+                           nullptr, blocks);
+  for (double* block : blocks) set_bounds(problem, block, response.grid().region);
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
   for (const Parameters& p : parameters) {

@@ -7,6 +7,7 @@
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/important_vertices.h"
 #include "inverse/solve/optimize_simplex.h"
+#include "inverse/solve/polish_lights.h"
 #include "inverse/solve/prepare_transport.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/stage_clock.h"
@@ -134,8 +135,9 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
           reached ? "error threshold of the lightcut met" : "every cluster is a light"};
 }
 
-Optimum optimize_jointly(const LightResponse& response, const Observations& observations, const LightTree& tree,
-                         const SolveOptions& options, double noise, StageClock& clock) {
+Optimum optimize_jointly(const TransportSource& transport, const LightResponse& response,
+                         const Observations& observations, const LightTree& tree, const SolveOptions& options,
+                         double noise, StageClock& clock) {
   CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
   const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
@@ -146,7 +148,10 @@ Optimum optimize_jointly(const LightResponse& response, const Observations& obse
     figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
   }
   clock.finish("joint_refinement", figures);
-  return {count.lights, cut.error, count.error, count.out_of_time ? "time limit" : "no further light explains more"};
+  const PolishedLights polished = polish_lights(transport, response, observations, count.lights);
+  clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
+  return {polished.lights, cut.error, polished.error,
+          count.out_of_time ? "time limit" : "no further light explains more"};
 }
 
 int verification_samples(const SolveOptions& options, std::size_t receivers) {
@@ -209,7 +214,8 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const double before = clock.total();
   const Optimum optimum = options.method == SolveMethod::kThesis
                               ? optimize_as_published(response, observations, tree, options, clock)
-                              : optimize_jointly(response, observations, tree, options, noise, clock);
+                              : optimize_jointly({problem.tracer, samples, transport.cache.settings}, response,
+                                                 observations, tree, options, noise, clock);
   result.optimal_seconds += clock.total() - before;
 
   result.lights = found_lights(response, observations, optimum.lights);

@@ -14,8 +14,8 @@ enum class BrushFalloff : std::uint8_t { kSmooth, kHard, kGaussian };
 
 struct Stroke {
   BrushMode mode = BrushMode::kAdd;
-  Vec3f color;            // cd/m²; kMultiply: factors
-  float radius = 0.3F;    // metres
+  Vec3f color;          // cd/m²; kMultiply: factors
+  float radius = 0.3F;  // metres
   BrushFalloff falloff = BrushFalloff::kSmooth;
   float opacity = 1;
   std::vector<Vec3f> path;  // metres, on the surface

@@ -19,6 +19,8 @@ using renderer::SurfaceSample;
 using renderer::Vec3f;
 
 constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
+constexpr int kPathsPerGatherPoint = 8;
+constexpr float kNearField = 8.0F;  // cell radii
 constexpr int kRaysPerGatherPoint = 64;
 constexpr float kOrientationWeight = 3.0F;  // turning a normal by 1 counts as this many spacings
 constexpr int kMostBounces = 400;
@@ -52,19 +54,22 @@ std::vector<SurfaceSample> trace_gather_path(const RayTracer& tracer, SurfaceSam
   return path;
 }
 
-// Gather points by importance: where paths from the receivers go.
-std::vector<SurfaceSample> choose_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
-                                                const GatherOptions& options) {
-  const std::size_t wanted = std::size_t(options.samples) * options.points_per_sample;
-  std::vector<std::vector<SurfaceSample>> paths(wanted);
-  renderer::parallel_for(wanted, [&](std::size_t i) {
-    const std::size_t receiver = i * receivers.size() / wanted;
-    paths[i] = trace_gather_path(tracer, receivers[receiver], Sampler(options.seed + 1, 0, std::uint32_t(i)));
+// Surface points by importance: where paths from the receivers go.
+std::vector<SurfaceSample> trace_gather_paths(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
+                                              std::size_t count, std::uint64_t seed) {
+  std::vector<std::vector<SurfaceSample>> paths(count);
+  renderer::parallel_for(count, [&](std::size_t i) {
+    const std::size_t receiver = i * receivers.size() / count;
+    paths[i] = trace_gather_path(tracer, receivers[receiver], Sampler(seed, 0, std::uint32_t(i)));
   });
   std::vector<SurfaceSample> all;
   for (const auto& path : paths) all.insert(all.end(), path.begin(), path.end());
+  return all;
+}
+
+std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std::size_t count) {
   std::vector<SurfaceSample> chosen;
-  const std::size_t count = std::min(wanted, all.size());
+  count = std::min(count, all.size());
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
   return chosen;
 }
@@ -112,6 +117,25 @@ float typical_spacing(const RayTracer& tracer, std::size_t points) {
   return std::sqrt(2 * (e.x * e.y + e.y * e.z + e.z * e.x) / float(std::max<std::size_t>(1, points)));
 }
 
+void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, const NearestGatherPoint& nearest) {
+  std::vector<std::uint32_t> cell(all.size());
+  renderer::parallel_for(all.size(), [&](std::size_t i) { cell[i] = nearest.find(all[i]); });
+  gather.cell_start.assign(gather.points.size() + 1, 0);
+  for (const std::uint32_t c : cell) ++gather.cell_start[c + 1];
+  std::partial_sum(gather.cell_start.begin(), gather.cell_start.end(), gather.cell_start.begin());
+  std::vector<std::size_t> next(gather.cell_start.begin(), gather.cell_start.end() - 1);
+  gather.cell_samples.resize(all.size());
+  gather.cell_radius.assign(gather.points.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    gather.cell_samples[next[cell[i]]++] = all[i];
+    gather.cell_radius[cell[i]] += length_squared(all[i].position - gather.points[cell[i]].position);
+  }
+  for (std::size_t c = 0; c < gather.points.size(); ++c) {
+    const std::size_t count = gather.cell_start[c + 1] - gather.cell_start[c];
+    gather.cell_radius[c] = std::sqrt(gather.cell_radius[c] / float(std::max<std::size_t>(1, count)));
+  }
+}
+
 SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from, int rays, std::uint64_t seed,
                            const NearestGatherPoint& nearest, const renderer::Control& control) {
   std::vector<std::vector<SparseTransport::Entry>> rows(from.size());
@@ -147,19 +171,36 @@ void add(std::span<LightBlock> sum, std::span<const LightBlock> term) {
   }
 }
 
+float direct_at(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
+  const float value = unoccluded_illumination(at, light);
+  if (value <= 0) return 0;
+  return tracer.occluded_between(light, renderer::offset_point(at.position, at.normal), seed) ? 0 : value;
+}
+
+float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i, Vec3f light,
+                             std::uint32_t seed) {
+  const SurfaceSample& point = gather.points[i];
+  const float near = kNearField * gather.cell_radius[i];
+  if (length_squared(light - point.position) > near * near) return direct_at(tracer, point, light, seed);
+  float sum = 0;
+  const std::size_t first = gather.cell_start[i], last = gather.cell_start[i + 1];
+  for (std::size_t k = first; k < last; ++k) sum += direct_at(tracer, gather.cell_samples[k], light, seed);
+  return sum / float(last - first);
+}
+
 std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const GatherOperator& gather,
                                                 std::span<const Vec3f> lights) {
   std::vector<LightBlock> direct(gather.points.size());
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    for (std::size_t i = 0; i < gather.points.size(); ++i) {
-      const SurfaceSample& at = gather.points[i];
-      const float value = unoccluded_illumination(at, lights[l]);
-      if (value <= 0) continue;
-      const auto seed = std::uint32_t(i * 0x9e3779b9U + l);
-      if (tracer.occluded_between(lights[l], renderer::offset_point(at.position, at.normal), seed)) continue;
-      for (auto& channel : direct[i].channel) channel[l] = value;
+  constexpr std::size_t kPoints = 1024;
+  renderer::parallel_for((direct.size() + kPoints - 1) / kPoints, [&](std::size_t chunk) {
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      for (std::size_t i = chunk * kPoints; i < std::min(direct.size(), (chunk + 1) * kPoints); ++i) {
+        const auto seed = std::uint32_t(i * 0x9e3779b9U + l);
+        const float value = direct_at_gather_point(tracer, gather, i, lights[l], seed);
+        for (auto& channel : direct[i].channel) channel[l] = value;
+      }
     }
-  }
+  });
   return direct;
 }
 
@@ -176,9 +217,12 @@ GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const Sur
   GatherOperator gather;
   gather.bounces = options.bounces;
   if (options.bounces == 0) return gather;
-  gather.points = choose_gather_points(tracer, receivers, options);
+  const std::size_t wanted = std::size_t(options.samples) * options.points_per_sample;
+  const auto all = trace_gather_paths(tracer, receivers, kPathsPerGatherPoint * wanted, options.seed + 1);
+  gather.points = every_nth(all, wanted);
   if (gather.points.empty()) return gather;
   const NearestGatherPoint nearest(gather.points, typical_spacing(tracer, gather.points.size()));
+  fill_cells(gather, all, nearest);
   gather.point_from_point = trace_rows(tracer, gather.points, kRaysPerGatherPoint, options.seed + 2, nearest, control);
   gather.receiver_from_point = trace_rows(tracer, receivers, options.samples, options.seed + 3, nearest, control);
   gather.ray_count = gather.points.size() * kRaysPerGatherPoint + receivers.size() * std::size_t(options.samples);

@@ -7,7 +7,8 @@
 //   a K_rg     the receivers' illumination by the gather points indirect = K_rg (D + K_gg D + K_gg² D + …)
 //
 // Rays from receivers and gather points go to the nearest gather point of like orientation, with the albedo of the very
-// spot that they hit. Surfaces count as Lambertian with their hemispherical albedo. The bias of both shrinks with
+// spot that they hit. A light close to a gather point is averaged over the point's cell: over samples of the surface
+// for which it stands. Surfaces count as Lambertian with their hemispherical albedo. The bias of both shrinks with
 // `samples` (more gather points), or is the material's; a bake measures it against the path tracer.
 // Source: Hašan, Pellacini, Bala, Direct-to-Indirect Transfer for Cinematic Relighting, 2006.
 
@@ -21,6 +22,10 @@ namespace chiaro::inverse {
 
 struct GatherOperator {
   std::vector<renderer::SurfaceSample> points;
+  // Samples of the cell of point i: cell_samples[cell_start[i]] … cell_samples[cell_start[i + 1] − 1].
+  std::vector<std::size_t> cell_start;
+  std::vector<renderer::SurfaceSample> cell_samples;
+  std::vector<float> cell_radius;       // metres, root mean square over the cell
   SparseTransport point_from_point;     // K_gg
   SparseTransport receiver_from_point;  // K_rg
   int bounces = -1;                     // as TraceOptions

@@ -14,7 +14,7 @@ namespace {
 using renderer::Error;
 
 constexpr double kDefaultLights = 700;
-constexpr float kDefaultInset = 0.04F;   // of the scene's extent, on every side
+constexpr float kDefaultInset = 0.02F;   // of the scene's extent, on every side
 constexpr float kInsideFraction = 0.6F;  // of probe rays that meet back faces, inside a solid
 constexpr float kTouching = 0.02F;       // of the spacing
 
@@ -67,7 +67,7 @@ std::array<int, 3> default_counts(Vec3f extent) {
   const double spacing = dimensions > 0 ? std::pow(volume / kDefaultLights, 1.0 / dimensions) : 1;
   std::array<int, 3> counts{};
   for (int a = 0; a < 3; ++a) {
-    counts[a] = extent[a] > 0.02 * longest ? std::max(2, int(std::lround(double(extent[a]) / spacing)) + 1) : 1;
+    counts[a] = extent[a] > 0.02 * longest ? std::max(1, int(std::lround(double(extent[a]) / spacing))) : 1;
   }
   return counts;
 }
@@ -79,16 +79,32 @@ Box3f default_region(const Box3f& bounds) {
 
 LightGrid empty_grid(const Box3f& region, const std::array<int, 3>& counts) {
   LightGrid grid;
+  grid.region = region;
   grid.counts = counts;
-  grid.origin = region.min;
   for (int a = 0; a < 3; ++a) {
-    if (counts[a] > 1) {
-      grid.spacing[a] = region.extent()[a] / float(counts[a] - 1);
-    } else {
-      grid.origin[a] = region.center()[a];
-    }
+    grid.spacing[a] = region.extent()[a] / float(counts[a]);
+    grid.origin[a] = region.min[a] + 0.5F * grid.spacing[a];
   }
   return grid;
+}
+
+Vec3f node_position(const LightGrid& grid, std::size_t node) {
+  const std::size_t x = node % grid.counts[0], y = node / grid.counts[0] % grid.counts[1];
+  const std::size_t z = node / grid.counts[0] / grid.counts[1];
+  return grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)};
+}
+
+bool looks_inside(const Probe& p) { return p.back_fraction >= kInsideFraction; }
+
+// Whether the sides of the scene's surfaces tell inside from outside. Where almost all of the scene looks like the
+// inside of a solid, its walls are turned outwards, and they do not.
+bool sides_tell(const renderer::RayTracer& tracer, const std::vector<Vec3f>& directions) {
+  const LightGrid probes = empty_grid(default_region(tracer.bounds()), {8, 8, 8});
+  int inside = 0;
+  for (std::size_t i = 0; i < 512; ++i) {
+    if (looks_inside(probe(tracer, node_position(probes, i), directions))) ++inside;
+  }
+  return inside < 460;
 }
 
 float least_positive(Vec3f v) {
@@ -116,36 +132,21 @@ std::optional<Box3f> six_numbers(const std::string& text) {
 
 }  // namespace
 
-Box3f LightGrid::region() const {
-  Box3f box{origin, origin};
-  for (int a = 0; a < 3; ++a) box.max[a] += spacing[a] * float(counts[a] - 1);
-  return box;
-}
-
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer.bounds()));
   LightGrid grid = empty_grid(region, options.counts[0] > 0 ? options.counts : default_counts(region.extent()));
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
   const std::vector<Vec3f> directions = probe_directions();
   std::vector<Probe> probes(nodes);
-  const auto position = [&](std::size_t node) {
-    const std::size_t x = node % grid.counts[0], y = node / grid.counts[0] % grid.counts[1];
-    const std::size_t z = node / grid.counts[0] / grid.counts[1];
-    return grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)};
-  };
-  renderer::parallel_for(nodes, [&](std::size_t i) { probes[i] = probe(tracer, position(i), directions); });
+  renderer::parallel_for(nodes, [&](std::size_t i) { probes[i] = probe(tracer, node_position(grid, i), directions); });
 
-  // Where almost everything looks like the inside of a solid, the walls are turned outwards: then their sides tell
-  // nothing.
-  const auto inside = [](const Probe& p) { return p.back_fraction >= kInsideFraction; };
-  const auto inside_count = std::size_t(std::count_if(probes.begin(), probes.end(), inside));
-  const bool sides_tell = double(inside_count) < 0.9 * double(nodes);
+  const bool solids = sides_tell(tracer, directions);
   const float touching = kTouching * least_positive(grid.spacing);
   grid.light_of_node.assign(nodes, -1);
   for (std::size_t i = 0; i < nodes; ++i) {
-    if ((sides_tell && inside(probes[i])) || probes[i].nearest < touching) continue;
+    if ((solids && looks_inside(probes[i])) || probes[i].nearest < touching) continue;
     grid.light_of_node[i] = int(grid.positions.size());
-    grid.positions.push_back(position(i));
+    grid.positions.push_back(node_position(grid, i));
   }
   if (grid.positions.empty()) {
     throw Error({tracer.scene().path, "light grid", "no light possible: every position lies inside a solid",

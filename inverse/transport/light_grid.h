@@ -12,15 +12,14 @@ namespace chiaro::inverse {
 using renderer::Box3f;
 using renderer::Vec3f;
 
-// Candidate light positions on the nodes of a regular grid, x fastest.
+// Candidate light positions in the middle of the cells of a regular grid over a region, x fastest.
 struct LightGrid {
+  Box3f region;                    // where lights may stand
   Vec3f origin;                    // of node (0, 0, 0), metres
   Vec3f spacing;                   // metres
   std::array<int, 3> counts{};     // nodes along x, y, z
   std::vector<int> light_of_node;  // index into positions, -1: left out (inside a solid)
   std::vector<Vec3f> positions;    // of the lights kept, in the order of their nodes
-
-  Box3f region() const;  // spanned by the nodes
 };
 
 struct LightGridOptions {

@@ -128,16 +128,29 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const Vector3d& positio
   return column;
 }
 
+Column LightResponse::indirect(const std::vector<Weight>& weights) const {
+  Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
+  for (const Weight& w : weights) {
+    const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
+    for (std::size_t i = 0; i < receivers_.size(); ++i) {
+      column.row(Eigen::Index(i)) += w.value * eigen(indirect[i]).transpose();
+    }
+  }
+  return column;
+}
+
+Column LightResponse::interpolated_indirect(const Vector3d& position) const {
+  return indirect(interpolation_weights(position));
+}
+
 Column LightResponse::evaluate(const Vector3d& position, VisibilitySource source) const {
   const std::vector<Weight> weights = interpolation_weights(position);
   const std::vector<double> visible = visibility(position, source, weights);
-  Column column(Eigen::Index(receivers_.size()), 3);
+  Column column = indirect(weights);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
-    const double direct =
-        visible[i] > 0 ? visible[i] * double(unoccluded_illumination(receivers_[i], vec3f(position))) : 0;
-    Vector3d value = Vector3d::Constant(direct);
-    for (const Weight& w : weights) value += w.value * eigen(cache_.indirect[w.light * cache_.receiver_count + i]);
-    column.row(Eigen::Index(i)) = value.transpose();
+    if (visible[i] <= 0) continue;
+    const double direct = visible[i] * double(unoccluded_illumination(receivers_[i], vec3f(position)));
+    column.row(Eigen::Index(i)).array() += direct;
   }
   return column;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "renderer/core/control.h"
+
 // Wider vector units where the CPU has them, chosen at run time. Sanitizers cannot instrument the resolvers.
 #if defined(__x86_64__) && !defined(CHIARO_SANITIZED)
 #define CHIARO_DISPATCH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
@@ -47,10 +49,13 @@ SparseTransport SparseTransport::from_rows(std::vector<std::vector<Entry>>&& row
 }
 
 void multiply(const SparseTransport& matrix, std::span<const LightBlock> in, std::span<LightBlock> result) {
-  for (std::size_t i = 0; i < matrix.row_count(); ++i) {
-    const auto row = matrix.row(i);
-    multiply_row(row.data(), row.data() + row.size(), in.data(), &result[i]);
-  }
+  constexpr std::size_t kRows = 512;
+  renderer::parallel_for((matrix.row_count() + kRows - 1) / kRows, [&](std::size_t chunk) {
+    for (std::size_t i = chunk * kRows; i < std::min(matrix.row_count(), (chunk + 1) * kRows); ++i) {
+      const auto row = matrix.row(i);
+      multiply_row(row.data(), row.data() + row.size(), in.data(), &result[i]);
+    }
+  });
 }
 
 }  // namespace chiaro::inverse

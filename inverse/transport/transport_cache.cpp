@@ -45,6 +45,8 @@ Attributes header_of(const TransportCache& cache, float scale) {
           {"chiaro:units",
            std::string("indirect / indirect_scale: illumination in cd/m^2 per candela; visibility: 0 or 1")},
           {"chiaro:indirect_scale", scale},
+          {"chiaro:region_min", array_of(grid.region.min)},
+          {"chiaro:region_max", array_of(grid.region.max)},
           {"chiaro:grid_origin", array_of(grid.origin)},
           {"chiaro:grid_spacing", array_of(grid.spacing)},
           {"chiaro:grid_counts", fmt::format("{},{},{}", grid.counts[0], grid.counts[1], grid.counts[2])},
@@ -108,6 +110,7 @@ class Header {
 
 LightGrid read_grid(const Header& header, const std::string& file) {
   LightGrid grid;
+  grid.region = {header.vector("region_min"), header.vector("region_max")};
   grid.origin = header.vector("grid_origin");
   grid.spacing = header.vector("grid_spacing");
   grid.counts = header.counts();

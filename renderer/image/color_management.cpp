@@ -62,7 +62,8 @@ std::vector<std::string> displays_of(const ocio::ConstConfigRcPtr& config) {
 
 std::vector<std::string> views_of(const ocio::ConstConfigRcPtr& config, const std::string& display) {
   std::vector<std::string> names;
-  for (int i = 0; i < config->getNumViews(display.c_str()); ++i) names.emplace_back(config->getView(display.c_str(), i));
+  for (int i = 0; i < config->getNumViews(display.c_str()); ++i)
+    names.emplace_back(config->getView(display.c_str(), i));
   return names;
 }
 

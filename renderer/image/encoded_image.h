@@ -7,8 +7,8 @@
 
 namespace chiaro::renderer {
 
-// What is wrong with a PNG or JPEG whose bytes are not all there or not all right; absent where nothing is, and for other
-// formats. Decoders of both print to standard error, or fill with grey, where this speaks.
+// What is wrong with a PNG or JPEG whose bytes are not all there or not all right; absent where nothing is, and for
+// other formats. Decoders of both print to standard error, or fill with grey, where this speaks.
 std::optional<std::string> find_damage(std::string_view encoded);
 
 }  // namespace chiaro::renderer

@@ -61,7 +61,8 @@ void append_attribute(Attributes& attributes, const OIIO::ParamValue& value, boo
 
 bool has_extension(const std::filesystem::path& path, std::initializer_list<std::string_view> extensions) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
@@ -125,9 +126,10 @@ OIIO::ImageSpec spec_of(const Image& image, PixelType type, const Attributes& at
   spec.alpha_channel = image.find_channel("A");
   spec["oiio:UnassociatedAlpha"] = 1;
   spec["compression"] = "zip";
-  // Without a date OpenImageIO writes the current one, and the same frame would be another file each time. It finds
-  // this, and does not write it, as its type is wrong.
-  spec.attribute("DateTime", 0);
+  // Without a date OpenImageIO writes the current one, and the same frame would be another file each time. This it
+  // finds, and does not write, as its type is wrong; it would say so on standard error.
+  static const bool kQuiet = OIIO::attribute("debug", 0);
+  if (kQuiet) spec.attribute("DateTime", 0);
   for (const auto& [name, value] : attributes) {
     std::visit(SetAttribute{spec, name == "capDate" ? "DateTime" : name}, value);
   }

@@ -67,7 +67,8 @@ std::size_t append_view(ordered_json& root, std::string& binary, const std::stri
   binary.resize((binary.size() + 3) / 4 * 4);
   const std::size_t offset = binary.size();
   binary += bytes;
-  if (!root.contains("buffers") || root["buffers"].empty()) root["buffers"] = ordered_json::array({ordered_json::object()});
+  if (!root.contains("buffers") || root["buffers"].empty())
+    root["buffers"] = ordered_json::array({ordered_json::object()});
   root["buffers"][0]["byteLength"] = binary.size();
   ordered_json& views = root["bufferViews"];
   views.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes.size()}});

@@ -134,8 +134,7 @@ std::optional<std::vector<Triangle>> read_triangles(const GltfDocument& document
 
 std::optional<Mesh> read_primitive(const GltfDocument& document, const GltfPrimitiveRef& ref) {
   if (find_attribute(document, ref, "POSITION") < 0) return std::nullopt;
-  std::optional<std::vector<Triangle>> triangles = read_triangles(document, ref);
-  if (!triangles) return std::nullopt;
+  if (primitive_of(document, ref).mode < TINYGLTF_MODE_TRIANGLES) return std::nullopt;
   Mesh mesh;
   mesh.name = document.model->meshes[ref.mesh].name;
   mesh.positions = read_positions(document, ref);
@@ -143,7 +142,7 @@ std::optional<Mesh> read_primitive(const GltfDocument& document, const GltfPrimi
   mesh.tangents = read_vec4_attribute(document, ref, "TANGENT");
   mesh.uv = {read_uv(document, ref, "TEXCOORD_0"), read_uv(document, ref, "TEXCOORD_1")};
   mesh.colors = read_colors(document, ref);
-  mesh.triangles = *std::move(triangles);
+  mesh.triangles = read_triangles(document, ref).value();
   mesh.material = primitive_of(document, ref).material;
   return mesh;
 }

@@ -36,7 +36,8 @@ std::vector<float> read_scalar_attribute(const GltfDocument& document, const Glt
 // COLOR_0; alpha 1 where it has three components.
 std::vector<Vec4f> read_colors(const GltfDocument& document, const GltfPrimitiveRef& ref);
 
-// Triangle lists, strips and fans; absent for points and lines. Indices are those of vertices.
+// Triangle lists, strips and fans; absent for points and lines. Indices are those of vertices. To be called after
+// read_positions, which finds out whether there are as many vertices as the file says.
 std::optional<std::vector<Triangle>> read_triangles(const GltfDocument& document, const GltfPrimitiveRef& ref);
 
 // All of these as a mesh: normals, tangents, uv and colors empty where absent, material -1 where none is given.

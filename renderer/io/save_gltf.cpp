@@ -148,7 +148,8 @@ void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights
   if (!options.keep_lights) remove_lights(root);
   add_lights(root, lights);
   GltfEmbedding embedding{scene_path, writes_text(path)};
-  container.json = embed(root.dump(-1, ' ', false, ordered_json::error_handler_t::replace), container.binary, embedding);
+  container.json =
+      embed(root.dump(-1, ' ', false, ordered_json::error_handler_t::replace), container.binary, embedding);
   write_file_atomically(path, embedding.as_text ? container.json : make_glb(container, path));
 }
 

@@ -26,17 +26,13 @@ struct Builder {
 
   template <class T>
   int add_accessor(const std::vector<T>& values, const char* type, int component_type, int target) {
-    views.push_back({{"buffer", 0},
-                     {"byteOffset", binary.size()},
-                     {"byteLength", values.size() * sizeof(T)},
-                     {"target", target}});
+    views.push_back(
+        {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", values.size() * sizeof(T)}, {"target", target}});
     binary.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     const std::size_t components = sizeof(T) / (component_type == kUnsignedShort ? 2 : 4);
     const std::size_t count = components == 3 && target == kElementArrayBuffer ? 3 * values.size() : values.size();
-    accessors.push_back({{"bufferView", views.size() - 1},
-                         {"componentType", component_type},
-                         {"count", count},
-                         {"type", type}});
+    accessors.push_back(
+        {{"bufferView", views.size() - 1}, {"componentType", component_type}, {"count", count}, {"type", type}});
     return int(accessors.size()) - 1;
   }
 
@@ -71,8 +67,8 @@ ordered_json make_primitive(Builder& builder, const VertexMeshPart& part, float 
   set_bounds(builder.accessors.back(), part.positions);
   attributes["NORMAL"] = builder.add_floats(part.normals);
   if (!part.illumination.empty()) {
-    attributes["COLOR_0"] = builder.add_accessor(display_colors(part.illumination, display_white), "VEC4",
-                                                 kUnsignedShort, kArrayBuffer);
+    attributes["COLOR_0"] =
+        builder.add_accessor(display_colors(part.illumination, display_white), "VEC4", kUnsignedShort, kArrayBuffer);
     builder.accessors.back()["normalized"] = true;
     attributes["_ILLUMINATION"] = builder.add_floats(part.illumination);
   }

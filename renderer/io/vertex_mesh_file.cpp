@@ -69,7 +69,8 @@ Vec3f world_normal(const Mat4f& transform, Vec3f normal) {
 }
 
 // In world space; where the file's normal has no direction, or there is none, that of the surface.
-std::vector<Vec3f> world_normals(const VertexMeshPart& part, const std::vector<Vec3f>& normals, const Mat4f& transform) {
+std::vector<Vec3f> world_normals(const VertexMeshPart& part, const std::vector<Vec3f>& normals,
+                                 const Mat4f& transform) {
   const bool complete = !normals.empty();
   std::vector<Vec3f> world(part.positions.size()), made;
   for (std::size_t i = 0; i < world.size(); ++i) {

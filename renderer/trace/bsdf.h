@@ -1,7 +1,12 @@
 #pragma once
 // Scattering at a surface: Lambert, or glTF 2.0's metallic-roughness (appendix B of the specification):
-//   f = (1 − metallic) [ (1 − F_d) c/π + F_d S ] + metallic F_m S,  S = V D,
-// D: GGX of α = roughness², V: height-correlated Smith, F: Schlick with F0 = 0.04 and F0 = c.
+//   f = (1 − metallic) (diffuse + F_d S) + metallic F_m S,  S = V D,
+// D: GGX of α = roughness², V: height-correlated Smith, F: Schlick with F0 = 0.04 and F0 = base colour c. In the
+// appendix' simplest form, diffuse = (1 − F_d) c/π, a white surface sends back up to 1.2 times the light that falls on
+// it at grazing angles. Here the diffuse part gets just what the coat leaves, so that a white dielectric's albedo is
+// one:
+//   diffuse = c/π (1 − E(θ_o)) (1 − E(θ_i)) / (1 − E_mean),  E: albedo of F_d S.
+// Source of the last: Kelemen & Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, 2001.
 // Directions are unit and point away from the surface.
 
 #include <optional>

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "renderer/core/error.h"
 #include "renderer/trace/camera_rays.h"
 #include "renderer/trace/film.h"
 #include "renderer/trace/path_tracer.h"
@@ -58,6 +59,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 void add_samples(const FrameTask& task, int first, int last, const Control& control, Film& film) {
   parallel_for(std::size_t(task.options.height), "render", control, [&](std::size_t row) {
     for (int x = 0; x < task.options.width; ++x) {
+      if (control.stop_requested()) throw Interruption();
       for (int i = first; i < last; ++i) {
         film.add(x, int(row), sample_pixel(task, x, int(row), std::uint32_t(i), film));
       }

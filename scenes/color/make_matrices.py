@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the matrices of config.ocio: between linear Rec.709 (D65) and ACES2065-1 (AP0, ACES white), adapted by Bradford.
+"""Prints the matrix of config.ocio: linear Rec.709 (D65) to ACES2065-1 (AP0, ACES white), adapted by Bradford.
 
 Sources: ITU-R BT.709; SMPTE ST 2065-1; the linearised Bradford transform as in ICC.1:2010, annex E.
 """
@@ -8,8 +8,11 @@ from fractions import Fraction as F
 
 REC709 = [(F("0.64"), F("0.33")), (F("0.30"), F("0.60")), (F("0.15"), F("0.06")), (F("0.3127"), F("0.3290"))]
 AP0 = [(F("0.7347"), F("0.2653")), (F("0"), F("1")), (F("0.0001"), F("-0.077")), (F("0.32168"), F("0.33767"))]
-BRADFORD = [[F("0.8951"), F("0.2664"), F("-0.1614")], [F("-0.7502"), F("1.7135"), F("0.0367")],
-            [F("0.0389"), F("-0.0685"), F("1.0296")]]
+BRADFORD = [
+    [F("0.8951"), F("0.2664"), F("-0.1614")],
+    [F("-0.7502"), F("1.7135"), F("0.0367")],
+    [F("0.0389"), F("-0.0685"), F("1.0296")],
+]
 
 
 def product(a, b):
@@ -18,8 +21,11 @@ def product(a, b):
 
 def inverse(m):
     (a, b, c), (d, e, f), (g, h, i) = m
-    adjugate = [[e * i - f * h, c * h - b * i, b * f - c * e], [f * g - d * i, a * i - c * g, c * d - a * f],
-                [d * h - e * g, b * g - a * h, a * e - b * d]]
+    adjugate = [
+        [e * i - f * h, c * h - b * i, b * f - c * e],
+        [f * g - d * i, a * i - c * g, c * d - a * f],
+        [d * h - e * g, b * g - a * h, a * e - b * d],
+    ]
     determinant = a * adjugate[0][0] + b * adjugate[1][0] + c * adjugate[2][0]
     return [[x / determinant for x in row] for row in adjugate]
 

@@ -53,8 +53,8 @@ TEST(Bsdf, SampledWeightIsEvaluationOverDensityAndConservesEnergy) {
         EXPECT_NEAR(s->weight.y, expected, 1e-3F * expected + 1e-6F);
         albedo += double(s->weight.y) / kCount;
       }
-      EXPECT_LT(albedo, 1.005);
-      EXPECT_GT(albedo, 0.35);
+      EXPECT_LT(albedo, 1.01);
+      if (m[0] == 0) EXPECT_NEAR(albedo, 1, 0.01);  // a white dielectric loses nothing
     }
   }
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "inverse/solve/refine_joint.h"
+
+namespace chiaro::inverse {
+
+// What the indirect light at the important vertices is computed from.
+struct TransportSource {
+  const renderer::RayTracer& tracer;
+  const std::vector<renderer::SurfaceSample>& receivers;
+  const BakeSettings& settings;
+};
+
+struct PolishedLights {
+  LightEstimates lights;
+  double error = 0;  // (3.6), no interpolation
+  int rounds = 0;
+};
+
+// The last descent, without interpolation: indirect light is computed at the lights' very positions, and its difference
+// from the interpolated one is carried along as a constant while the lights are refined; again until they rest.
+PolishedLights polish_lights(const TransportSource& transport, const LightResponse& response,
+                             const Observations& observations, const LightEstimates& start);
+
+}  // namespace chiaro::inverse

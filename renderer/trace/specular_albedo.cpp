@@ -1,0 +1,90 @@
+#include "renderer/trace/specular_albedo.h"
+
+#include <array>
+
+#include "renderer/core/sampler.h"
+#include "renderer/trace/ggx.h"
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr int kSize = 32;  // steps in the cosine, and in the square root of alpha (the perceived roughness)
+constexpr int kSamples = 256;
+
+struct Table {
+  std::array<std::array<SpecularAlbedo, kSize>, kSize> directional;  // [roughness][cosine]
+  std::array<SpecularAlbedo, kSize> mean;                            // [roughness]
+};
+
+SpecularAlbedo integrate(float cosine, float alpha) {
+  const Vec3f wo{std::sqrt(1 - cosine * cosine), 0, cosine};
+  SpecularAlbedo sum;
+  for (std::uint32_t k = 0; k < kSamples; ++k) {
+    Sampler sampler(1, 0, k);
+    const Vec3f h = ggx::sample_visible_normal(wo, alpha, sampler.next_2d());
+    const Vec3f wi = 2 * dot(wo, h) * h - wo;
+    if (wi.z <= 0) continue;
+    // f cosθ / pdf without Fresnel: G₂ / G₁.
+    const float weight = ggx::visibility(wo.z, wi.z, alpha) * 4 * wo.z * wi.z / ggx::masking(wo.z, alpha);
+    const float w = ggx::schlick_weight(dot(wo, h));
+    sum.scale += weight * (1 - w) / kSamples;
+    sum.bias += weight * w / kSamples;
+  }
+  return sum;
+}
+
+float cosine_of(int i) { return std::max(1e-3F, float(i) / (kSize - 1)); }
+
+Table make_table() {
+  Table table;
+  for (int r = 0; r < kSize; ++r) {
+    const float roughness = std::max(0.03F, float(r) / (kSize - 1));
+    for (int c = 0; c < kSize; ++c) table.directional[r][c] = integrate(cosine_of(c), roughness * roughness);
+    float total = 0;
+    for (int c = 0; c < kSize; ++c) {
+      const float weight = cosine_of(c);  // 2 cosθ d(cosθ), up to the factor that `total` takes off
+      table.mean[r].scale += weight * table.directional[r][c].scale;
+      table.mean[r].bias += weight * table.directional[r][c].bias;
+      total += weight;
+    }
+    table.mean[r].scale /= total;
+    table.mean[r].bias /= total;
+  }
+  return table;
+}
+
+const Table& table() {
+  static const Table made = make_table();
+  return made;
+}
+
+struct Place {
+  int low;
+  float t;
+};
+
+Place place(float x) {
+  const float at = std::clamp(x, 0.0F, 1.0F) * (kSize - 1);
+  const int low = std::min(int(at), kSize - 2);
+  return {low, at - float(low)};
+}
+
+SpecularAlbedo mix(float t, SpecularAlbedo a, SpecularAlbedo b) {
+  return {(1 - t) * a.scale + t * b.scale, (1 - t) * a.bias + t * b.bias};
+}
+
+}  // namespace
+
+SpecularAlbedo specular_albedo(float cosine, float alpha) {
+  const Place r = place(std::sqrt(alpha)), c = place(cosine);
+  const auto& low = table().directional[r.low];
+  const auto& high = table().directional[r.low + 1];
+  return mix(r.t, mix(c.t, low[c.low], low[c.low + 1]), mix(c.t, high[c.low], high[c.low + 1]));
+}
+
+SpecularAlbedo mean_specular_albedo(float alpha) {
+  const Place r = place(std::sqrt(alpha));
+  return mix(r.t, table().mean[r.low], table().mean[r.low + 1]);
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,217 @@
+#include "renderer/image/image_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderer/core/atomic_file.h"
+#include "tests/renderer/io/gltf_builder.h"
+
+namespace chiaro::renderer::tests {
+namespace {
+
+using renderer::Attributes;
+using renderer::AttributeValue;
+using renderer::Image;
+using renderer::ImageFile;
+using renderer::load_image;
+using renderer::make_image;
+using renderer::PixelType;
+using renderer::save_image;
+
+Image layered_image() {
+  Image image = make_image(7, 5, {"R", "G", "B", "A", "albedo.R", "light.key lamp.B", "depth", "visibility"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i % 53) / 7 - 1;
+  return image;
+}
+
+Attributes frame_attributes() {
+  std::array<float, 16> matrix;
+  for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] = float(i) + 0.5F;
+  return {{"chromaticities", std::array<float, 8>{0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F, 0.3127F, 0.329F}},
+          {"whiteLuminance", 1.0F},
+          {"worldToCamera", matrix},
+          {"worldToNDC", matrix},
+          {"samples", 64},
+          {"owner", std::string("somebody")},
+          {"capDate", std::string("2001:02:03 04:05:06")},
+          {"chiaro:grid", std::string("8, 8, 8")},
+          {"chiaro:longReceiverFingerprintName", std::string(100000, 'f')},
+          {"lensShift", std::array<float, 2>{1, 2}},
+          {"origin", std::array<float, 3>{1, 2, 3}}};
+}
+
+const AttributeValue* find(const Attributes& attributes, const std::string& name) {
+  for (const auto& [key, value] : attributes) {
+    if (key == name) return &value;
+  }
+  return nullptr;
+}
+
+// Largest difference over the channels of `a`, found in `b` by name.
+float largest_difference(const Image& a, const Image& b) {
+  float largest = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      for (int c = 0; c < a.channel_count(); ++c) {
+        largest = std::max(largest, std::abs(a.at(x, y)[c] - b.at(x, y)[b.find_channel(a.channel_names[c])]));
+      }
+    }
+  }
+  return largest;
+}
+
+void expect_same_layout(const Image& a, const Image& b) {
+  ASSERT_EQ(a.width, b.width);
+  ASSERT_EQ(a.height, b.height);
+  ASSERT_EQ(a.channel_count(), b.channel_count());
+  for (const std::string& name : a.channel_names) ASSERT_GE(b.find_channel(name), 0) << name;
+}
+
+TEST(ExrFile, FloatPixelsAndAttributesComeBack) {
+  const TemporaryFolder folder;
+  const Image image = layered_image();
+  save_image(image, folder / "frame.exr", PixelType::kFloat, frame_attributes());
+  const ImageFile loaded = load_image(folder / "frame.exr");
+  expect_same_layout(image, loaded.image);
+  EXPECT_EQ(largest_difference(image, loaded.image), 0);
+  for (const auto& [name, value] : frame_attributes()) {
+    const AttributeValue* found = find(loaded.attributes, name);
+    ASSERT_NE(found, nullptr) << name;
+    EXPECT_EQ(*found, value) << name;
+  }
+}
+
+TEST(ExrFile, HalvesRoundAndDoNotOverflow) {
+  const TemporaryFolder folder;
+  Image image = layered_image();
+  image.pixels[0] = 1e9F;
+  image.pixels[1] = -1e9F;
+  save_image(image, folder / "frame.exr", PixelType::kHalf);
+  const ImageFile loaded = load_image(folder / "frame.exr");
+  EXPECT_EQ(loaded.image.at(0, 0)[loaded.image.find_channel("R")], 65504.0F);
+  EXPECT_EQ(loaded.image.at(0, 0)[loaded.image.find_channel("G")], -65504.0F);
+  image.pixels[0] = 65504;
+  image.pixels[1] = -65504;
+  EXPECT_LE(largest_difference(image, loaded.image), 8 * std::exp2(-11.0F));
+}
+
+TEST(ExrFile, TheSameImageIsTheSameFile) {
+  const TemporaryFolder folder;
+  save_image(layered_image(), folder / "a.exr", PixelType::kHalf);
+  const std::string bytes = renderer::read_file(folder / "a.exr");
+  EXPECT_EQ(bytes.find("capDate"), std::string::npos) << "no date that nobody asked for";
+}
+
+TEST(ExrFile, TheHeaderAloneHasNoPixels) {
+  const TemporaryFolder folder;
+  save_image(layered_image(), folder / "frame.exr", PixelType::kHalf, frame_attributes());
+  const ImageFile header = renderer::load_image_header(folder / "frame.exr");
+  EXPECT_EQ(header.image.width, 7);
+  EXPECT_EQ(header.image.channel_count(), 8);
+  EXPECT_TRUE(header.image.pixels.empty());
+  EXPECT_EQ(std::get<int>(*find(header.attributes, "samples")), 64);
+}
+
+TEST(PngFile, EightBitsComeBackUnchanged) {
+  const TemporaryFolder folder;
+  Image image = make_image(16, 16, {"R", "G", "B", "A"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i * 7 % 256) / 255;
+  save_image(image, folder / "picture.png", PixelType::kUint8);
+  const ImageFile loaded = load_image(folder / "picture.png");
+  expect_same_layout(image, loaded.image);
+  EXPECT_LE(largest_difference(image, loaded.image), 1e-6F) << "colour is not multiplied by alpha";
+}
+
+TEST(PngFile, MoreChannelsThanItHoldsAreRefused) {
+  const TemporaryFolder folder;
+  const auto save = [&](const std::string& name) { save_image(layered_image(), folder / name, PixelType::kUint8); };
+  EXPECT_NE(error_of([&] { save("frame.png"); }).find("8 channels"), std::string::npos);
+  EXPECT_NE(error_of([&] { save("frame.nothing"); }).find("extension"), std::string::npos);
+  EXPECT_NE(error_of([&] { save("no such folder/frame.exr"); }), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
+class DamagedImage : public testing::TestWithParam<const char*> {};
+
+TEST_P(DamagedImage, IsRefusedWhereverItIsCut) {
+  const TemporaryFolder folder;
+  Image image = make_image(64, 64, {"R", "G", "B"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i * i % 251) / 251;
+  const auto path = folder / (std::string("whole") + GetParam());
+  save_image(image, path, std::string(GetParam()) == ".exr" ? PixelType::kHalf : PixelType::kUint8);
+  const std::string whole = renderer::read_file(path);
+  for (const double fraction : {0.0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98}) {
+    const auto cut =
+        folder.write(std::string("cut") + GetParam(), whole.substr(0, std::size_t(fraction * double(whole.size()))));
+    const std::string message = error_of([&] { load_image(cut); });
+    EXPECT_NE(message.find("cut"), std::string::npos) << fraction;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, DamagedImage, testing::Values(".exr", ".png", ".jpg"));
+
+TEST(ImageFile, WhatIsNotAnImageIsRefused) {
+  const TemporaryFolder folder;
+  EXPECT_NE(error_of([&] { load_image(folder / "not there.exr"); }).find("no such file"), std::string::npos);
+  EXPECT_NE(error_of([&] { load_image(folder / ""); }), "");
+  const auto text = folder.write("text.exr", "this is not an image");
+  EXPECT_NE(error_of([&] { load_image(text); }), "");
+  EXPECT_NE(error_of([&] { renderer::load_image_header(text); }), "");
+}
+
+std::string encoded(const Image& image, const std::string& name) {
+  const TemporaryFolder folder;
+  save_image(image, folder / name, PixelType::kUint8);
+  return renderer::read_file(folder / name);
+}
+
+Image two_texels(const std::vector<std::string>& channels, const std::vector<float>& pixels) {
+  Image image = make_image(2, 1, channels);
+  image.pixels = pixels;
+  return image;
+}
+
+TEST(DecodeTexture, EveryNumberOfChannelsBecomesRgba) {
+  const auto texels = [](const std::vector<std::string>& channels, const std::vector<float>& pixels) {
+    return renderer::decode_texture(encoded(two_texels(channels, pixels), "t.png"), "t").rgba;
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(texels({"Y"}, {0, 1}), (Bytes{0, 0, 0, 255, 255, 255, 255, 255}));
+  EXPECT_EQ(texels({"Y", "A"}, {1, 0, 0, 1}), (Bytes{255, 255, 255, 0, 0, 0, 0, 255}));
+  EXPECT_EQ(texels({"R", "G", "B"}, {1, 0, 0, 0, 0, 1}), (Bytes{255, 0, 0, 255, 0, 0, 255, 255}));
+  EXPECT_EQ(texels({"R", "G", "B", "A"}, {1, 0, 0, 0.2F, 0, 1, 1, 0}), (Bytes{255, 0, 0, 51, 0, 255, 255, 0}))
+      << "as stored, not multiplied by alpha";
+}
+
+TEST(DecodeTexture, RowsBeginAtTheTop) {
+  Image image = make_image(8, 16, {"R", "G", "B"});
+  for (int x = 0; x < 8; ++x) image.at(x, 0)[0] = 1;
+  for (const char* name : {"t.png", "t.webp"}) {
+    const renderer::Texture texture = renderer::decode_texture(encoded(image, name), name);
+    ASSERT_EQ(texture.width, 8);
+    ASSERT_EQ(texture.height, 16);
+    EXPECT_GT(texture.rgba[0], 128) << name;
+    EXPECT_LT(texture.rgba[4 * 8 * 15], 64) << name;
+  }
+}
+
+TEST(DecodeTexture, DamageIsToldWithTheLabel) {
+  Image image = make_image(32, 32, {"R", "G", "B"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i * i % 251) / 251;
+  for (const char* name : {"t.png", "t.jpg"}) {
+    const std::string whole = encoded(image, name);
+    EXPECT_EQ(renderer::decode_texture(whole, name).rgba.size(), 4096U);
+    for (std::size_t size = 0; size < whole.size() - 2; size += 1 + whole.size() / 40) {
+      const std::string message = error_of([&] { renderer::decode_texture(whole.substr(0, size), "images[7]"); });
+      EXPECT_EQ(message.rfind("images[7]", 0), 0U) << size << " of " << whole.size() << ": " << message;
+    }
+  }
+  std::string flipped = encoded(image, "t.png");
+  flipped[flipped.size() / 2] ^= 1;
+  EXPECT_NE(error_of([&] { renderer::decode_texture(flipped, "t"); }).find("corrupt"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer::tests

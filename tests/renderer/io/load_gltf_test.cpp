@@ -1,0 +1,346 @@
+#include "renderer/io/load_gltf.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderer/image/image_file.h"
+#include "tests/renderer/io/gltf_builder.h"
+
+namespace chiaro::renderer::tests {
+namespace {
+
+using renderer::load_gltf;
+using renderer::LoadedScene;
+using renderer::Mesh;
+using renderer::Vec3f;
+
+LoadedScene load(const GltfBuilder& gltf) {
+  const TemporaryFolder folder;
+  return load_gltf(folder.write("scene.glb", gltf.glb()));
+}
+
+void expect_near(Vec3f a, Vec3f b, float tolerance = 1e-6F) {
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], tolerance) << "axis " << axis;
+}
+
+bool mentions(const std::vector<std::string>& lines, const std::string& part) {
+  for (const std::string& line : lines) {
+    if (line.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(GltfAccessors, StridedPositionsAndNormalsShareABufferView) {
+  GltfBuilder gltf;
+  const std::vector<float> interleaved{0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 1, 0, 3, 0, 0, 0, 1};
+  const int view = gltf.add_view(bytes_of(interleaved), 24);
+  const ordered_json common = {{"bufferView", view}, {"componentType", kFloat}, {"count", 3}, {"type", "VEC3"}};
+  ordered_json normals = common;
+  normals["byteOffset"] = 12;
+  gltf.add_mesh({{"POSITION", gltf.add_accessor(common)}, {"NORMAL", gltf.add_accessor(normals)}});
+  gltf.add_node({{"mesh", 0}});
+  const LoadedScene loaded = load(gltf);
+  const Mesh& mesh = loaded.scene.meshes.at(0);
+  EXPECT_EQ(mesh.positions, (std::vector<Vec3f>{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}));
+  EXPECT_EQ(mesh.normals, (std::vector<Vec3f>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}));
+}
+
+TEST(GltfAccessors, NormalizedIntegersBecomeFractions) {
+  GltfBuilder gltf = triangle_scene();
+  const int uv = gltf.add_accessor<std::uint16_t>({0, 65535, 32768, 0, 65535, 65535}, 2, kUnsignedShort, true);
+  const int color =
+      gltf.add_accessor<std::uint8_t>({255, 0, 51, 255, 0, 255, 0, 102, 0, 0, 0, 0}, 4, kUnsignedByte, true);
+  gltf.primitive()["attributes"]["TEXCOORD_0"] = uv;
+  gltf.primitive()["attributes"]["COLOR_0"] = color;
+  const LoadedScene loaded = load(gltf);
+  const Mesh& mesh = loaded.scene.meshes.at(0);
+  EXPECT_FLOAT_EQ(mesh.uv[0].at(0).y, 1);
+  EXPECT_FLOAT_EQ(mesh.uv[0].at(1).x, 32768.0F / 65535);
+  EXPECT_FLOAT_EQ(mesh.colors.at(0).z, 0.2F);
+  EXPECT_FLOAT_EQ(mesh.colors.at(1).w, 0.4F);
+  EXPECT_TRUE(mesh.uv[1].empty());
+}
+
+TEST(GltfAccessors, SignedNormalizedIntegersReachMinusOne) {
+  GltfBuilder gltf;
+  const int positions = gltf.add_accessor<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}, 4, kShort, true);
+  gltf.root["accessors"][0]["type"] = "VEC3";
+  gltf.root["bufferViews"][0]["byteStride"] = 8;
+  gltf.add_mesh({{"POSITION", positions}});
+  gltf.add_node({{"mesh", 0}});
+  const LoadedScene loaded = load(gltf);
+  EXPECT_EQ(loaded.scene.meshes.at(0).positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}));
+}
+
+TEST(GltfAccessors, SparseValuesReplaceThoseOfTheBase) {
+  GltfBuilder gltf = triangle_scene();
+  const int indices = gltf.add_view(bytes_of<std::uint8_t>({1, 2}));
+  const int values = gltf.add_view(bytes_of<float>({5, 0, 0, 0, 7, 0}));
+  gltf.root["accessors"][0]["sparse"] = {{"count", 2},
+                                         {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
+                                         {"values", {{"bufferView", values}}}};
+  EXPECT_EQ(load(gltf).scene.meshes.at(0).positions, (std::vector<Vec3f>{{0, 0, 0}, {5, 0, 0}, {0, 7, 0}}));
+}
+
+TEST(GltfAccessors, WithoutABufferViewTheBaseIsZero) {
+  GltfBuilder gltf = triangle_scene();
+  const int indices = gltf.add_view(bytes_of<std::uint16_t>({1, 2}));
+  const int values = gltf.add_view(bytes_of<float>({5, 0, 0, 0, 7, 0}));
+  gltf.root["accessors"][0].erase("bufferView");
+  gltf.root["accessors"][0]["sparse"] = {{"count", 2},
+                                         {"indices", {{"bufferView", indices}, {"componentType", kUnsignedShort}}},
+                                         {"values", {{"bufferView", values}}}};
+  EXPECT_EQ(load(gltf).scene.meshes.at(0).positions, (std::vector<Vec3f>{{0, 0, 0}, {5, 0, 0}, {0, 7, 0}}));
+}
+
+struct ModeCase {
+  int mode;
+  std::size_t triangles;
+};
+
+class GltfModes : public testing::TestWithParam<ModeCase> {};
+
+TEST_P(GltfModes, TrianglesFaceTheSameWay) {
+  GltfBuilder gltf;
+  // A fan's and a strip's order of the same square differ.
+  const std::vector<float> strip{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, fan{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  gltf.add_mesh({{"POSITION", gltf.add_accessor(GetParam().mode == 6 ? fan : strip, 3, kFloat)}});
+  gltf.primitive()["mode"] = GetParam().mode;
+  gltf.add_node({{"mesh", 0}});
+  const LoadedScene loaded = load(gltf);
+  EXPECT_EQ(renderer::drawn_triangle_count(loaded.scene), GetParam().triangles);
+  EXPECT_EQ(mentions(loaded.warnings, "without triangles"), GetParam().triangles == 0);
+  for (const Mesh& mesh : loaded.scene.meshes) {
+    for (const Vec3f& normal : mesh.normals) expect_near(normal, {0, 0, 1});
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllModes, GltfModes,
+                         testing::Values(ModeCase{0, 0}, ModeCase{1, 0}, ModeCase{2, 0}, ModeCase{3, 0}, ModeCase{4, 1},
+                                         ModeCase{5, 2}, ModeCase{6, 2}));
+
+TEST(GltfMeshes, WithoutNormalsTrianglesGetVerticesOfTheirOwn) {
+  GltfBuilder gltf;
+  gltf.add_mesh({{"POSITION", gltf.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 3, kFloat)}});
+  gltf.primitive()["indices"] = gltf.add_accessor<std::uint8_t>({0, 1, 2, 0, 2, 3}, 1, kUnsignedByte);
+  gltf.add_node({{"mesh", 0}});
+  const LoadedScene loaded = load(gltf);
+  const Mesh& mesh = loaded.scene.meshes.at(0);
+  ASSERT_EQ(mesh.positions.size(), 6U);
+  expect_near(mesh.normals[0], {0, 0, 1});
+  expect_near(mesh.normals[5], {1, 0, 0});
+}
+
+TEST(GltfMeshes, TrianglesWithoutAreaAreDroppedAndCounted) {
+  GltfBuilder gltf;
+  const int positions = gltf.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0}, 3, kFloat);
+  const int normals = gltf.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 2, 0, 0, 1}, 3, kFloat);
+  gltf.add_mesh({{"POSITION", positions}, {"NORMAL", normals}});
+  gltf.primitive()["indices"] = gltf.add_accessor<std::uint32_t>({0, 1, 2, 0, 1, 3, 1, 1, 2}, 1, kUnsignedInt);
+  gltf.add_node({{"mesh", 0}});
+  const LoadedScene loaded = load(gltf);
+  const Mesh& mesh = loaded.scene.meshes.at(0);
+  EXPECT_EQ(mesh.triangles, (std::vector<renderer::Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(mesh.positions.size(), 3U) << "the vertex that only the dropped triangle used is gone";
+  expect_near(mesh.normals[2], {0, 0, 1});
+  EXPECT_TRUE(mentions(loaded.warnings, "2 triangles of zero area"));
+}
+
+TEST(GltfMeshes, NormalsWithoutDirectionAreReplaced) {
+  GltfBuilder gltf = triangle_scene();
+  const float nan = std::nanf("");
+  gltf.primitive()["attributes"]["NORMAL"] = gltf.add_accessor<float>({0, 0, 0, nan, 0, 0, 0, 0, -3}, 3, kFloat);
+  const LoadedScene loaded = load(gltf);
+  const Mesh& mesh = loaded.scene.meshes.at(0);
+  expect_near(mesh.normals[0], {0, 0, 1});
+  expect_near(mesh.normals[1], {0, 0, 1});
+  expect_near(mesh.normals[2], {0, 0, -1});
+  EXPECT_TRUE(mentions(loaded.warnings, "2 normals"));
+}
+
+TEST(GltfMeshes, NodesShareTheMeshesOfTheirPrimitives) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["nodes"][0]["name"] = "first";
+  gltf.add_node({{"mesh", 0}, {"translation", {1, 2, 3}}});
+  const LoadedScene loaded = load(gltf);
+  EXPECT_EQ(loaded.scene.meshes.size(), 1U);
+  ASSERT_EQ(loaded.scene.instances.size(), 2U);
+  EXPECT_EQ(loaded.scene.instances[0].name, "first");
+  EXPECT_EQ(loaded.scene.instances[1].name, "node 1");
+  EXPECT_EQ(loaded.scene.instances[1].mesh, 0);
+  EXPECT_EQ(loaded.scene.materials.at(loaded.scene.meshes[0].material).base_color, (Vec3f{1, 1, 1}));
+}
+
+TEST(GltfNodes, TranslationRotationScaleEqualTheirMatrix) {
+  GltfBuilder gltf = triangle_scene();
+  const double h = std::sqrt(0.5);  // a quarter turn around Y
+  gltf.root["nodes"][0] = {{"mesh", 0}, {"translation", {1, 2, 3}}, {"rotation", {0, h, 0, h}}, {"scale", {2, 3, 4}}};
+  gltf.add_node({{"mesh", 0}, {"matrix", {0, 0, -2, 0, 0, 3, 0, 0, 4, 0, 0, 0, 1, 2, 3, 1}}});
+  const LoadedScene loaded = load(gltf);
+  for (int i = 0; i < 16; ++i) {
+    EXPECT_NEAR(loaded.scene.instances.at(0).world_from_object.m[i],
+                loaded.scene.instances.at(1).world_from_object.m[i], 1e-6F);
+  }
+  expect_near(transform_point(loaded.scene.instances[0].world_from_object, {1, 0, 0}), {1, 2, 1});
+}
+
+TEST(GltfNodes, ParentsApplyAfterChildrenAndMayMirror) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["nodes"][0] = {{"mesh", 0}, {"translation", {1, 0, 0}}};
+  gltf.add_node({{"children", {0}}, {"scale", {-2, 1, 1}}});
+  const LoadedScene loaded = load(gltf);
+  ASSERT_EQ(loaded.scene.instances.size(), 1U);
+  expect_near(transform_point(loaded.scene.instances[0].world_from_object, {1, 0, 0}), {-4, 0, 0});
+  EXPECT_LT(determinant3(loaded.scene.instances[0].world_from_object), 0);
+}
+
+TEST(GltfNodes, OnlyTheDefaultSceneIsShown) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.add_node({{"mesh", 0}, {"name", "shown"}});
+  gltf.root["scenes"] = ordered_json::array({{{"nodes", {0}}}, {{"nodes", {1}}}});
+  EXPECT_EQ(load(gltf).scene.instances.size(), 2U) << "without a default scene every root node is";
+  gltf.root["scene"] = 1;
+  const LoadedScene loaded = load(gltf);
+  ASSERT_EQ(loaded.scene.instances.size(), 1U);
+  EXPECT_EQ(loaded.scene.instances[0].name, "shown");
+}
+
+TEST(GltfNodes, CopiesWithoutVolumeAreLeftOut) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["nodes"][0]["scale"] = {0, 0, 0};
+  const LoadedScene loaded = load(gltf);
+  EXPECT_TRUE(loaded.scene.instances.empty());
+  EXPECT_TRUE(mentions(loaded.warnings, "1 instances scaled to nothing"));
+}
+
+TEST(GltfNodes, GpuInstancingMultipliesANode) {
+  GltfBuilder gltf = triangle_scene();
+  const int translations = gltf.add_accessor<float>({0, 0, 0, 5, 0, 0}, 3, kFloat);
+  gltf.root["nodes"][0] = {
+      {"mesh", 0},
+      {"scale", {2, 2, 2}},
+      {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", translations}}}}}}}};
+  gltf.root["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  const LoadedScene loaded = load(gltf);
+  ASSERT_EQ(loaded.scene.instances.size(), 2U);
+  expect_near(transform_point(loaded.scene.instances[1].world_from_object, {1, 0, 0}), {12, 0, 0});
+}
+
+TEST(GltfCameras, ScaleAndMirroringLeaveTheAxesOrthonormal) {
+  GltfBuilder gltf;
+  gltf.root["cameras"] = ordered_json::array(
+      {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}, {"aspectRatio", 1.5}}}},
+       {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}});
+  gltf.add_node({{"camera", 0}, {"name", "shot"}});
+  gltf.add_node({{"children", {0}}, {"scale", {-0.01, 0.01, 0.01}}, {"translation", {1, 2, 3}}});
+  gltf.add_node({{"camera", 1}});
+  const LoadedScene loaded = load(gltf);
+  ASSERT_EQ(loaded.scene.cameras.size(), 2U);
+  const renderer::Camera& shot =
+      loaded.scene.cameras[1].name == "shot" ? loaded.scene.cameras[1] : loaded.scene.cameras[0];
+  EXPECT_EQ(shot.name, "shot");
+  EXPECT_FLOAT_EQ(shot.vertical_fov, 0.8F);
+  EXPECT_FLOAT_EQ(shot.aspect_ratio, 1.5F);
+  EXPECT_NEAR(determinant3(shot.world_from_camera), 1, 1e-5F);
+  expect_near(shot.world_from_camera.column(3), {1, 2, 3});
+  const renderer::Camera& other = &shot == &loaded.scene.cameras[0] ? loaded.scene.cameras[1] : loaded.scene.cameras[0];
+  EXPECT_TRUE(other.orthographic);
+  EXPECT_FLOAT_EQ(other.half_width, 2);
+  EXPECT_EQ(other.name, "camera 1");
+}
+
+TEST(GltfLights, ArePlacedByTheirNodes) {
+  GltfBuilder gltf;
+  gltf.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = ordered_json::array(
+      {{{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 5}},
+       {{"type", "spot"}, {"name", "beam"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.3}}}},
+       {{"type", "directional"}, {"intensity", 3}}});
+  const auto light = [](int index) { return ordered_json{{"KHR_lights_punctual", {{"light", index}}}}; };
+  const double h = std::sqrt(0.5);  // a quarter turn around X: -Z becomes +Y
+  gltf.add_node({{"name", "lamp"}, {"translation", {1, 2, 3}}, {"extensions", light(0)}});
+  gltf.add_node({{"rotation", {h, 0, 0, h}}, {"scale", {3, 3, 3}}, {"extensions", light(1)}});
+  gltf.add_node({{"extensions", light(2)}});
+  const LoadedScene loaded = load(gltf);
+  ASSERT_EQ(loaded.lights.size(), 3U);
+  const auto& lamp = std::get<renderer::PointLight>(loaded.lights[0]);
+  EXPECT_EQ(lamp.name, "lamp");
+  EXPECT_EQ(lamp.position, (Vec3f{1, 2, 3}));
+  EXPECT_EQ(lamp.intensity, (Vec3f{10, 5, 0}));
+  const auto& beam = std::get<renderer::SpotLight>(loaded.lights[1]);
+  EXPECT_EQ(beam.name, "beam");
+  expect_near(beam.direction, {0, 1, 0});
+  EXPECT_FLOAT_EQ(beam.outer_cone_angle, 0.3F);
+  EXPECT_EQ(beam.intensity, (Vec3f{1, 1, 1}));
+  expect_near(std::get<renderer::DirectionalLight>(loaded.lights[2]).direction, {0, 0, -1});
+  EXPECT_TRUE(mentions(loaded.warnings, "range of 1 lights is ignored"));
+}
+
+TEST(GltfMaterials, FactorsTexturesAndAlphaComeThrough) {
+  const TemporaryFolder folder;
+  renderer::Image image = renderer::make_image(2, 1, {"R", "G", "B"});
+  image.pixels = {1, 0, 0, 0, 1, 0};
+  save_image(image, folder / "two texels.png", renderer::PixelType::kUint8);
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["images"] = ordered_json::array({{{"uri", "two%20texels.png"}}, {{"uri", "not used, not there.png"}}});
+  gltf.root["samplers"] = ordered_json::array({{{"magFilter", 9728}, {"wrapS", 33071}, {"wrapT", 33648}}});
+  gltf.root["textures"] = ordered_json::array({{{"source", 0}, {"sampler", 0}}, {{"source", 0}}, {{"source", 1}}});
+  gltf.root["materials"] =
+      ordered_json::array({{{"name", "painted"},
+                            {"pbrMetallicRoughness",
+                             {{"baseColorFactor", {0.5, 0.25, 1, 0.75}},
+                              {"metallicFactor", 0},
+                              {"roughnessFactor", 0.5},
+                              {"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}},
+                            {"emissiveTexture", {{"index", 1}, {"texCoord", 2}}},
+                            {"emissiveFactor", {1, 0.5, 0}},
+                            {"alphaMode", "MASK"},
+                            {"alphaCutoff", 0.25},
+                            {"doubleSided", true},
+                            {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 200}}}}}}});
+  gltf.primitive()["material"] = 0;
+  const LoadedScene loaded = load_gltf(folder.write("scene.glb", gltf.glb()));
+  const renderer::Material& material = loaded.scene.materials.at(0);
+  EXPECT_EQ(material.name, "painted");
+  EXPECT_EQ(material.base_color, (Vec3f{0.5F, 0.25F, 1}));
+  EXPECT_FLOAT_EQ(material.alpha, 0.75F);
+  EXPECT_FLOAT_EQ(material.roughness, 0.5F);
+  EXPECT_EQ(material.emission, (Vec3f{200, 100, 0}));
+  EXPECT_EQ(material.alpha_mode, renderer::AlphaMode::kMask);
+  EXPECT_TRUE(material.double_sided);
+  EXPECT_EQ(material.base_color_texture.uv_set, 1);
+  EXPECT_EQ(material.emission_texture.uv_set, 0);
+  EXPECT_TRUE(mentions(loaded.warnings, "TEXCOORD_2"));
+  ASSERT_EQ(loaded.scene.textures.size(), 2U) << "one image, sampled in two ways";
+  const renderer::Texture& texture = loaded.scene.textures[std::size_t(material.base_color_texture.texture)];
+  EXPECT_EQ(texture.rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255}));
+  EXPECT_TRUE(texture.nearest);
+  EXPECT_EQ(texture.wrap_u, renderer::Wrap::kClampToEdge);
+  EXPECT_EQ(texture.wrap_v, renderer::Wrap::kMirroredRepeat);
+}
+
+TEST(GltfBuffers, DataUrisAndFilesWithSpacesAreRead) {
+  const TemporaryFolder folder;
+  const GltfBuilder gltf = triangle_scene();
+  folder.write("my buffer.bin", gltf.binary + "more than byteLength");
+  ordered_json root = gltf.root;
+  root["buffers"] = ordered_json::array({{{"byteLength", 36}, {"uri", "my%20buffer.bin"}}});
+  EXPECT_EQ(load_gltf(folder.write("a.gltf", root.dump())).scene.meshes.size(), 1U);
+  root["buffers"][0]["uri"] = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+  const LoadedScene loaded = load_gltf(folder.write("b.gltf", root.dump()));
+  EXPECT_EQ(loaded.scene.meshes.at(0).positions[1], (Vec3f{1, 0, 0}));
+}
+
+TEST(GltfExtensions, UsedOnesThatAreNotReadWarnOnce) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_variants"};
+  gltf.root["animations"] = ordered_json::array({{{"channels", {}}}});
+  const LoadedScene loaded = load(gltf);
+  ASSERT_EQ(loaded.warnings.size(), 2U);
+  EXPECT_TRUE(mentions(loaded.warnings, "KHR_texture_transform"));
+  EXPECT_TRUE(mentions(loaded.warnings, "animations"));
+}
+
+}  // namespace
+}  // namespace chiaro::renderer::tests

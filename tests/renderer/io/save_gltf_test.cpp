@@ -1,0 +1,170 @@
+#include "renderer/io/save_gltf.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/vec.h"
+#include "renderer/image/image_file.h"
+#include "renderer/io/load_gltf.h"
+#include "tests/renderer/io/gltf_builder.h"
+
+namespace chiaro::renderer::tests {
+namespace {
+
+using renderer::Lights;
+using renderer::load_gltf;
+using renderer::LoadedScene;
+using renderer::save_gltf_with_lights;
+using renderer::Vec3f;
+
+// Not among the scene's keys that adding lights may touch.
+constexpr const char* kKept[] = {"asset", "materials", "meshes", "accessors", "bufferViews", "extras"};
+
+Lights some_lights() {
+  return {renderer::PointLight{"key", {1, 2.3F, -4}, {0.3F, 40, 5}},
+          renderer::SpotLight{"rim", {0, 1, 0}, normalize(Vec3f{1, -2, 3}), {7, 8, 9}, 0.2F, 0.4F},
+          renderer::DirectionalLight{"sun", {0, 0, 1}, {1000, 900, 800}},
+          renderer::DirectionalLight{"moon", {0, 0, -1}, {0, 0, 0}}};
+}
+
+GltfBuilder rich_scene() {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["extras"] = {{"number", 0.1}, {"big", 12345678901234567LL}, {"text", "ü"}};
+  gltf.root["materials"] = ordered_json::array({{{"extensions", {{"VENDOR_thing", {{"deep", {1, 2.5, "x"}}}}}}}});
+  gltf.root["extensionsUsed"] = {"VENDOR_thing"};
+  gltf.primitive()["material"] = 0;
+  gltf.root["scenes"] = ordered_json::array({{{"nodes", {0}}, {"name", "main"}}});
+  gltf.root["scene"] = 0;
+  return gltf;
+}
+
+ordered_json json_of(const std::filesystem::path& path) {
+  return ordered_json::parse(renderer::read_gltf_container(path).json);
+}
+
+void expect_near(Vec3f a, Vec3f b, float relative = 2e-6F) { EXPECT_LE(length(a - b), relative * (1 + length(b))); }
+
+void expect_same(const Lights& found, const Lights& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(name_of(found[i]), name_of(expected[i]));
+    ASSERT_EQ(found[i].index(), expected[i].index());
+  }
+  const auto& key = std::get<renderer::PointLight>(found[0]);
+  EXPECT_EQ(key.position, (Vec3f{1, 2.3F, -4}));
+  expect_near(key.intensity, {0.3F, 40, 5});
+  const auto& rim = std::get<renderer::SpotLight>(found[1]);
+  expect_near(rim.direction, normalize(Vec3f{1, -2, 3}));
+  EXPECT_EQ(rim.inner_cone_angle, 0.2F);
+  EXPECT_EQ(rim.outer_cone_angle, 0.4F);
+  expect_near(rim.intensity, {7, 8, 9});
+  expect_near(std::get<renderer::DirectionalLight>(found[2]).direction, {0, 0, 1});
+  expect_near(std::get<renderer::DirectionalLight>(found[2]).illuminance, {1000, 900, 800});
+  expect_near(std::get<renderer::DirectionalLight>(found[3]).direction, {0, 0, -1});
+  EXPECT_EQ(std::get<renderer::DirectionalLight>(found[3]).illuminance, (Vec3f{0, 0, 0}));
+}
+
+class SaveGltf : public testing::TestWithParam<const char*> {};
+
+TEST_P(SaveGltf, LightsComeBackAndNothingElseChanges) {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.glb", rich_scene().glb()), lit = folder / GetParam();
+  save_gltf_with_lights(scene, some_lights(), lit, {});
+  expect_same(load_gltf(lit).lights, some_lights());
+  const ordered_json before = json_of(scene), after = json_of(lit);
+  for (const char* key : kKept) EXPECT_EQ(before[key].dump(), after[key].dump()) << key;
+  EXPECT_EQ(after["nodes"][0], before["nodes"][0]);
+  EXPECT_EQ(after["extensionsUsed"].dump(), R"(["VENDOR_thing","KHR_lights_punctual"])");
+  EXPECT_EQ(after["scenes"][0]["nodes"].size(), 5U);
+  EXPECT_EQ(fingerprint(load_gltf(lit).scene), fingerprint(load_gltf(scene).scene));
+}
+
+INSTANTIATE_TEST_SUITE_P(Containers, SaveGltf, testing::Values("lit.glb", "lit.gltf"));
+
+TEST(SaveGltfLights, OldOnesAreTakenOutUnlessKept) {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.glb", rich_scene().glb()), lit = folder / "lit.glb";
+  save_gltf_with_lights(scene, some_lights(), lit, {});
+  save_gltf_with_lights(lit, {some_lights()[0]}, folder / "kept.glb", {.keep_lights = true});
+  EXPECT_EQ(load_gltf(folder / "kept.glb").lights.size(), 5U);
+  save_gltf_with_lights(lit, {some_lights()[0]}, folder / "one.glb", {});
+  EXPECT_EQ(load_gltf(folder / "one.glb").lights.size(), 1U);
+  save_gltf_with_lights(lit, {}, folder / "none.glb", {});
+  EXPECT_TRUE(load_gltf(folder / "none.glb").lights.empty());
+  EXPECT_EQ(renderer::read_gltf_container(folder / "none.glb").json.find("KHR_lights_punctual"), std::string::npos);
+}
+
+TEST(SaveGltfLights, ASceneMayBeSavedOverItself) {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.glb", rich_scene().glb());
+  save_gltf_with_lights(scene, some_lights(), scene, {});
+  expect_same(load_gltf(scene).lights, some_lights());
+}
+
+TEST(SaveGltfLights, FilesWithoutScenesGetOneOfAllRoots) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf = triangle_scene();
+  gltf.add_node({{"children", {0}}, {"translation", {0, 5, 0}}});
+  const auto scene = folder.write("scene.glb", gltf.glb());
+  save_gltf_with_lights(scene, some_lights(), folder / "lit.glb", {});
+  const LoadedScene loaded = load_gltf(folder / "lit.glb");
+  EXPECT_EQ(loaded.lights.size(), 4U);
+  ASSERT_EQ(loaded.scene.instances.size(), 1U);
+  EXPECT_EQ(loaded.scene.instances[0].world_from_object.column(3), (Vec3f{0, 5, 0}));
+  EXPECT_EQ(json_of(folder / "lit.glb")["scenes"][0]["nodes"].front(), 1);
+}
+
+GltfBuilder scattered_scene(const TemporaryFolder& folder) {
+  renderer::Image image = renderer::make_image(1, 1, {"R", "G", "B"});
+  image.pixels = {1, 0, 0};
+  save_image(image, folder / "red texel.png", renderer::PixelType::kUint8);
+  GltfBuilder gltf = triangle_scene();
+  folder.write("first.bin", gltf.binary);
+  folder.write("second.bin", bytes_of<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}));
+  gltf.root["buffers"] =
+      ordered_json::array({{{"byteLength", 36}, {"uri", "first.bin"}}, {{"byteLength", 36}, {"uri", "second.bin"}}});
+  gltf.root["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 36}});
+  const int normals = gltf.add_accessor({{"bufferView", 1}, {"componentType", kFloat}, {"count", 3}, {"type", "VEC3"}});
+  gltf.primitive()["attributes"]["NORMAL"] = normals;
+  gltf.root["images"] = ordered_json::array({{{"uri", "red%20texel.png"}}});
+  gltf.root["textures"] = ordered_json::array({{{"source", 0}}});
+  gltf.root["materials"] = ordered_json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  gltf.primitive()["material"] = 0;
+  return gltf;
+}
+
+class SaveScatteredGltf : public testing::TestWithParam<const char*> {};
+
+TEST_P(SaveScatteredGltf, ExternalBuffersAndImagesAreEmbedded) {
+  const TemporaryFolder folder, elsewhere;
+  const auto scene = folder.write("scene.gltf", scattered_scene(folder).root.dump());
+  save_gltf_with_lights(scene, some_lights(), elsewhere / GetParam(), {});
+  const LoadedScene loaded = load_gltf(elsewhere / GetParam());
+  expect_same(loaded.lights, some_lights());
+  EXPECT_EQ(fingerprint(loaded.scene), fingerprint(load_gltf(scene).scene));
+  EXPECT_EQ(loaded.scene.textures.at(0).rgba, (std::vector<std::uint8_t>{255, 0, 0, 255}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Containers, SaveScatteredGltf, testing::Values("lit.glb", "lit.gltf"));
+
+TEST(SaveGltfLights, AMissingFileIsNamedAndNothingIsWritten) {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.gltf", scattered_scene(folder).root.dump());
+  std::filesystem::remove(folder / "second.bin");
+  const std::string message = error_of([&] { save_gltf_with_lights(scene, {}, folder / "lit.glb", {}); });
+  EXPECT_NE(message.find("second.bin"), std::string::npos) << message;
+  EXPECT_FALSE(std::filesystem::exists(folder / "lit.glb"));
+}
+
+TEST(SaveGltfLights, AnImageAloneGetsABufferOfItsOwn) {
+  const TemporaryFolder folder;
+  renderer::Image image = renderer::make_image(1, 1, {"R", "G", "B"});
+  save_image(image, folder / "texel.png", renderer::PixelType::kUint8);
+  const auto scene = folder.write("scene.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"texel.png"}]})");
+  save_gltf_with_lights(scene, some_lights(), folder / "lit.glb", {});
+  const ordered_json json = json_of(folder / "lit.glb");
+  EXPECT_EQ(json["images"][0].dump(), R"({"bufferView":0,"mimeType":"image/png"})");
+  EXPECT_EQ(renderer::read_gltf_container(folder / "lit.glb").binary->substr(0, 4), "\x89PNG");
+}
+
+}  // namespace
+}  // namespace chiaro::renderer::tests
