@@ -7,6 +7,24 @@
 namespace chiaro::renderer {
 namespace {
 
+// The full sphere, or a spot's outer cone.
+struct EmissionCone {
+  Vec3f origin, axis{0, 0, 1};
+  Vec3f intensity;
+  float cos_outer = -1;
+
+  float solid_angle() const { return 2 * kPi * (1 - cos_outer); }
+};
+
+// solid_angle() is 0 for a light that has no position.
+EmissionCone emission_cone(const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light)) return {point->position, {0, 0, 1}, point->intensity, -1};
+  if (const auto* spot = std::get_if<SpotLight>(&light)) {
+    return {spot->position, spot->direction, spot->intensity, std::cos(spot->outer_cone_angle)};
+  }
+  return {{}, {0, 0, 1}, {}, 1};
+}
+
 struct PunctualVisitor {
   Vec3f point;
 
@@ -50,6 +68,40 @@ float mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle
 }  // namespace
 
 PunctualSample sample_punctual(const Light& light, Vec3f point) { return std::visit(PunctualVisitor{point}, light); }
+
+PunctualEmission::PunctualEmission(const Lights& lights) : lights_(lights) {
+  for (const Light& light : lights) {
+    const EmissionCone cone = emission_cone(light);
+    power_.push_back(cone.solid_angle() * max_component(cone.intensity));
+    total_power_ += power_.back();
+  }
+}
+
+PunctualEmission::Sample PunctualEmission::sample(float pick, Vec2f u) const {
+  float left = pick * total_power_;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < power_.size(); ++i) {
+    if (!(power_[i] > 0)) continue;
+    chosen = i;
+    left -= power_[i];
+    if (left < 0) break;
+  }
+  const EmissionCone cone = emission_cone(lights_[chosen]);
+  const float z = 1 - u.x * (1 - cone.cos_outer), sine = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * kPi * u.y;
+  Sample s{
+      chosen, cone.origin, Frame3f(cone.axis).world_from_local({sine * std::cos(phi), sine * std::sin(phi), z}), {}};
+  s.direction = normalize(s.direction);
+  // The light's own falloff, read one metre away.
+  s.intensity = sample_punctual(lights_[chosen], cone.origin + s.direction).irradiance;
+  return s;
+}
+
+float PunctualEmission::pdf(std::size_t light, Vec3f direction) const {
+  if (!(power_[light] > 0)) return 0;
+  const EmissionCone cone = emission_cone(lights_[light]);
+  if (dot(direction, cone.axis) < cone.cos_outer && cone.cos_outer > -1) return 0;
+  return power_[light] / (total_power_ * cone.solid_angle());
+}
 
 EmissiveTriangles::EmissiveTriangles(const Scene& scene) : scene_(scene), probability_(scene.instances.size()) {
   std::vector<double> power;

@@ -18,6 +18,28 @@ struct PunctualSample {
 
 PunctualSample sample_punctual(const Light& light, Vec3f point);
 
+// Rays that leave point and spot lights, chosen by power. Directional lights send none.
+class PunctualEmission {
+ public:
+  // Keeps a reference to `lights`, which must outlive it.
+  explicit PunctualEmission(const Lights& lights);
+  bool empty() const { return !(total_power_ > 0); }
+
+  struct Sample {
+    std::size_t light = 0;
+    Vec3f origin, direction;  // unit
+    Vec3f intensity;          // candela, that way
+  };
+  Sample sample(float pick, Vec2f u) const;
+  // Density of sample() for a light and a unit direction from it: per steradian, times the light's probability.
+  float pdf(std::size_t light, Vec3f direction) const;
+
+ private:
+  const Lights& lights_;
+  std::vector<float> power_;  // lumens of the brightest channel
+  float total_power_ = 0;
+};
+
 // The scene's emissive triangles, sampled by power.
 class EmissiveTriangles {
  public:

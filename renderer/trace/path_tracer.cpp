@@ -10,7 +10,15 @@ namespace {
 constexpr int kRouletteVertex = 3;
 constexpr float kMostSurvival = 0.95F;
 
-float balance_heuristic(float pdf, float other) { return pdf / (pdf + other); }
+// Light subpaths are as long as this part of the scene's diagonal at most. Their business is the bright spot close to a
+// light; farther away scattered rays find as much, for less.
+constexpr float kSubpathReach = 0.1F;
+
+// 0 where both are zero or infinite: a point of no measure.
+float balance_heuristic(float pdf, float other) {
+  const float weight = pdf / (pdf + other);
+  return weight >= 0 ? weight : 0;
+}
 
 // Emission from no triangle at all, where the scene's own is not wanted.
 const Scene& scene_without_emission() {
@@ -27,6 +35,7 @@ struct PathTracer::Vertex {
   Vec3f to_viewer;
   const Bsdf* bsdf;  // nullptr: a receiver, whose response to irradiance is 1/π
   int index;
+  float area_pdf = 0;  // with which scattering at the vertex before found this one, per m²
 
   Vec3f eval(Vec3f to_light) const {
     if (bsdf != nullptr) return bsdf->eval(to_viewer, to_light);
@@ -36,11 +45,14 @@ struct PathTracer::Vertex {
   float pdf(Vec3f to_light) const {
     return bsdf != nullptr ? bsdf->pdf(to_viewer, to_light) : std::max(0.0F, dot(normal, to_light)) * kInvPi;
   }
+  Vec3f ray_origin() const { return offset_point(position, normal); }
 };
 
 PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission)
     : tracer_(tracer),
       lights_(lights),
+      emission_(lights),
+      subpath_reach_(kSubpathReach * tracer.bounds().diagonal()),
       emitters_(scene_emission ? tracer.scene() : scene_without_emission()),
       bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces) {}
 
@@ -50,33 +62,95 @@ float PathTracer::visibility(Vec3f origin, Vec3f to_light, float distance, Sampl
   return tracer_.occluded({origin, to_light, 0, far, sampler.next_bits()}) ? 0.0F : 1.0F;
 }
 
-void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const Vec3f origin = offset_point(v.position, v.normal);
-  const auto contribution = [&](std::size_t i, PunctualSample& s) {
-    s = sample_punctual(lights_[i], v.position);
-    return throughput * v.eval(s.to_light) * s.irradiance;
-  };
-  PunctualSample s;
-  if (v.index == 0) {
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-      const Vec3f value = contribution(i, s);
-      if (max_component(value) > 0) light.add(0, i, visibility(origin, s.to_light, s.distance, sampler) * value);
-    }
-    return;
-  }
-  // Further along one light is enough: chosen by what it would bring, if nothing stood between.
-  const float pick = sampler.next_1d();
-  float total = 0;
-  for (std::size_t i = 0; i < lights_.size(); ++i) total += max_component(contribution(i, s));
-  float left = pick * total;
+void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  const Vec3f origin = v.ray_origin();
   for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const Vec3f value = contribution(i, s);
-    const float weight = max_component(value);
-    left -= weight;
-    if (!(weight > 0) || (left > 0 && i + 1 < lights_.size())) continue;
-    light.add(v.index, i, (visibility(origin, s.to_light, s.distance, sampler) * total / weight) * value);
-    return;
+    const PunctualSample s = sample_punctual(lights_[i], v.position);
+    const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance;
+    if (max_component(value) > 0) light.add(v.index, i, visibility(origin, s.to_light, s.distance, sampler) * value);
   }
+}
+
+namespace {
+
+// What a light would bring if nothing stood between: one light is picked in proportion to it.
+template <class Vertex>
+float pick_weight(const Vertex& v, const Light& light) {
+  const PunctualSample s = sample_punctual(light, v.position);
+  return max_component(v.eval(s.to_light) * s.irradiance);
+}
+
+}  // namespace
+
+std::size_t PathTracer::pick_light(const Vertex& v, float pick, float& probability) const {
+  float total = 0;
+  for (const Light& light : lights_) total += pick_weight(v, light);
+  float left = pick * total;
+  std::size_t chosen = lights_.size();
+  for (std::size_t i = 0; i < lights_.size() && total > 0; ++i) {
+    const float weight = pick_weight(v, lights_[i]);
+    if (!(weight > 0)) continue;
+    chosen = i;
+    probability = weight / total;
+    left -= weight;
+    if (left < 0) break;
+  }
+  return chosen;
+}
+
+float PathTracer::pick_probability(const Vertex& v, std::size_t light) const {
+  float total = 0;
+  for (const Light& l : lights_) total += pick_weight(v, l);
+  return total > 0 ? pick_weight(v, lights_[light]) / total : 0;
+}
+
+// Beyond vertex 0, where one light is enough. Weighted against a ray from that light having ended here.
+void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  float probability = 0;
+  const std::size_t i = pick_light(v, sampler.next_1d(), probability);
+  if (i == lights_.size()) return;
+  const PunctualSample s = sample_punctual(lights_[i], v.position);
+  const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance / probability;
+  if (!is_finite(value)) return;  // closer to the light than floats can tell
+  float weight = 1;
+  if (s.distance <= subpath_reach_) {
+    const float cosine = std::abs(dot(v.normal, s.to_light));
+    const float subpath_pdf = emission_.pdf(i, -s.to_light) * cosine / (s.distance * s.distance);
+    weight = balance_heuristic(v.area_pdf * probability, subpath_pdf);
+  }
+  light.add(v.index, i, (weight * visibility(v.ray_origin(), s.to_light, s.distance, sampler)) * value);
+}
+
+// A ray from a light ends at y, and y is connected with the vertex.
+void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  const float pick = sampler.next_1d();
+  const PunctualEmission::Sample from = emission_.sample(pick, sampler.next_2d());
+  const auto hit = tracer_.intersect({from.origin, from.direction, 0, subpath_reach_, sampler.next_bits()});
+  if (!hit) return;
+  const Vec3f end = from.origin + hit->distance * from.direction;
+  const float r2 = length_squared(end - v.position);
+  if (!(r2 > 0)) return;
+  const Vec3f to_end = (end - v.position) / std::sqrt(r2);
+  const Vec3f scattered = throughput * v.eval(to_end);
+  if (!(max_component(scattered) > 0)) return;
+
+  const Ray connection{v.position, to_end, 0, kInfinity, 0};
+  const SurfacePoint point = make_surface_point(tracer_.scene(), connection, *hit);
+  const Bsdf bsdf(point);
+  const Vertex y{point.position, point.geometric_normal, -to_end, &bsdf, v.index + 1};
+  const float cosine_light = std::abs(dot(y.normal, from.direction)), cosine_vertex = dot(y.normal, -to_end);
+  const Vec3f reflected = y.eval(-from.direction) * from.intensity;
+  if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
+
+  // Densities of y, per m², by this ray and by scattering at v followed by picking the same light.
+  const float d2 = hit->distance * hit->distance;
+  const float subpath_pdf = emission_.pdf(from.light, from.direction) * cosine_light / d2;
+  const float scatter_pdf = v.pdf(to_end) * cosine_vertex / r2 * pick_probability(y, from.light);
+  const float weight = balance_heuristic(subpath_pdf, scatter_pdf);
+  const Vec3f value = (weight * cosine_vertex / (r2 * d2 * subpath_pdf)) * scattered * reflected;
+  if (!(max_component(value) > 0) || !is_finite(value)) return;
+  if (tracer_.occluded_between(v.ray_origin(), y.ray_origin(), sampler.next_bits())) return;
+  light.add(v.index + 1, from.light, value);
 }
 
 void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
@@ -86,8 +160,24 @@ void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sample
   const Vec3f value = throughput * v.eval(s.to_light) * s.radiance / s.pdf;
   if (!(max_component(value) > 0)) return;
   const float weight = balance_heuristic(s.pdf, v.pdf(s.to_light));
-  const Vec3f origin = offset_point(v.position, v.normal);
-  light.add(v.index, emission_source(), (weight * visibility(origin, s.to_light, s.distance, sampler)) * value);
+  light.add(v.index, emission_source(), (weight * visibility(v.ray_origin(), s.to_light, s.distance, sampler)) * value);
+}
+
+// The light of one vertex, but for what scattered rays bring.
+void PathTracer::add_lights(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  if (!lights_.empty()) {
+    if (v.index == 0) {
+      add_all_punctual(v, throughput, sampler, light);
+    } else {
+      add_one_punctual(v, throughput, sampler, light);
+    }
+  }
+  add_indirect_samples(v, throughput, sampler, light);
+}
+
+void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  if (!emission_.empty() && v.index < bounces_) add_light_subpath(v, throughput, sampler, light);
+  if (!emitters_.empty()) add_emissive(v, throughput, sampler, light);
 }
 
 void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
@@ -103,9 +193,11 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
     }
     if (index > bounces_) return;
     const Bsdf bsdf(point);
-    const Vertex vertex{point.position, point.geometric_normal, -direction, &bsdf, index};
-    if (!lights_.empty()) add_punctual(vertex, throughput, sampler, light);
-    if (!emitters_.empty()) add_emissive(vertex, throughput, sampler, light);
+    const float cosine = dot(point.geometric_normal, -direction);
+    const Vertex vertex{point.position, point.geometric_normal,
+                        -direction,     &bsdf,
+                        index,          pdf * cosine / (hit->distance * hit->distance)};
+    add_lights(vertex, throughput, sampler, light);
     if (index == bounces_ && emitters_.empty()) return;
     const Vec2f u = sampler.next_2d();
     const auto next = bsdf.sample(-direction, u, sampler.next_1d());
@@ -116,7 +208,7 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
       if (!(sampler.next_1d() < survival)) return;
       throughput *= 1 / survival;
     }
-    origin = offset_point(point.position, point.geometric_normal);
+    origin = vertex.ray_origin();
     direction = next->direction;
     pdf = next->pdf;
   }
@@ -126,31 +218,29 @@ void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int i
                                Sampler& sampler, PathLight& light) const {
   const Bsdf bsdf(point);
   const Vertex vertex{point.position, point.geometric_normal, to_viewer, &bsdf, index};
-  if (!lights_.empty()) add_punctual(vertex, throughput, sampler, light);
-  if (!emitters_.empty()) add_emissive(vertex, throughput, sampler, light);
+  add_lights(vertex, throughput, sampler, light);
   if (index == bounces_ && emitters_.empty()) return;
   const Vec2f u = sampler.next_2d();
   const auto next = bsdf.sample(to_viewer, u, sampler.next_1d());
   if (!next) return;
-  trace(offset_point(point.position, point.geometric_normal), next->direction, next->pdf, index + 1,
-        throughput * next->weight, sampler, light);
+  trace(vertex.ray_origin(), next->direction, next->pdf, index + 1, throughput * next->weight, sampler, light);
 }
 
 void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const {
-  if (!lights_.empty()) add_punctual({position, normal, normal, nullptr, 0}, {1, 1, 1}, sampler, light);
+  add_all_punctual({position, normal, normal, nullptr, 0}, {1, 1, 1}, sampler, light);
 }
 
 void PathTracer::add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler,
                                   PathLight& light) const {
   const Vertex vertex{position, normal, normal, nullptr, 0};
   if (with_punctual) add_punctual_illumination(position, normal, sampler, light);
-  if (!emitters_.empty()) add_emissive(vertex, {1, 1, 1}, sampler, light);
+  add_indirect_samples(vertex, {1, 1, 1}, sampler, light);
   if (bounces_ == 0 && emitters_.empty()) return;
   const Vec3f local = sample_cosine_hemisphere(sampler.next_2d());
   if (!(local.z > 0)) return;
   // Illumination is the mean of incident radiance over cosine-weighted directions.
-  trace(offset_point(position, normal), normalize(Frame3f(normal).world_from_local(local)), local.z * kInvPi, 1,
-        {1, 1, 1}, sampler, light);
+  trace(vertex.ray_origin(), normalize(Frame3f(normal).world_from_local(local)), local.z * kInvPi, 1, {1, 1, 1},
+        sampler, light);
 }
 
 bool has_blended_surfaces(const Scene& scene) {

@@ -1,7 +1,12 @@
 #pragma once
-// The light transport estimator that frames and illumination share: unidirectional path tracing with next-event
-// estimation, multiple importance sampling for emissive surfaces, and Russian roulette.
-// Source: Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997 (balance heuristic: eq. 9.8).
+// The light transport estimator that frames and illumination share: path tracing from the eye or the receiver with
+// next-event estimation, Russian roulette, and multiple importance sampling where it matters:
+// - emissive surfaces are found by light samples and by scattered rays;
+// - the bright spot that a point light makes on a surface close to it, which scattered rays rarely meet, is found by a
+// ray
+//   from the light too, whose end every vertex of the path is connected with (bidirectional path tracing with light
+//   subpaths of two vertices).
+// Source: Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997 (balance heuristic: eq. 9.8; ch. 10).
 
 #include <vector>
 
@@ -47,12 +52,20 @@ class PathTracer {
   struct Vertex;
   void trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
              PathLight& light) const;
-  void add_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_lights(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_indirect_samples(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_all_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_one_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_light_subpath(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  std::size_t pick_light(const Vertex& vertex, float pick, float& probability) const;
+  float pick_probability(const Vertex& vertex, std::size_t light) const;
   void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   float visibility(Vec3f origin, Vec3f to_light, float distance, Sampler& sampler) const;
 
   const RayTracer& tracer_;
   const Lights& lights_;
+  PunctualEmission emission_;
+  float subpath_reach_;  // metres
   EmissiveTriangles emitters_;
   int bounces_;
 };

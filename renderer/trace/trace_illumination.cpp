@@ -9,7 +9,7 @@ namespace {
 
 // Samples are taken in this many batches, each scrambled by itself, so that their spread tells the error of the mean
 // although the samples within a batch are stratified.
-constexpr int kBatches = 8;
+constexpr int kBatches = 4;
 
 struct Estimate {
   Vec3f value, standard_error;

@@ -54,7 +54,7 @@ TEST(Bsdf, SampledWeightIsEvaluationOverDensityAndConservesEnergy) {
         albedo += double(s->weight.y) / kCount;
       }
       EXPECT_LT(albedo, 1.01);
-      if (m[0] == 0) EXPECT_NEAR(albedo, 1, 0.01);  // a white dielectric loses nothing
+      EXPECT_GT(albedo, m[0] == 0 ? 0.99 : 0.1);  // a white dielectric loses nothing
     }
   }
 }
