@@ -18,6 +18,7 @@ namespace chiaro::renderer {
 class Bsdf {
  public:
   explicit Bsdf(const SurfacePoint& point);
+  Vec3f normal() const { return frame_.normal; }  // shading normal
 
   // f · cosθ_i, per channel; zero below either horizon.
   Vec3f eval(Vec3f to_viewer, Vec3f to_light) const;

@@ -19,8 +19,6 @@ CameraRays::CameraRays(const Camera& camera, int width, int height)
     : world_from_camera_(without_scale(camera.world_from_camera)),
       orthographic_(camera.orthographic),
       half_height_(camera.orthographic ? camera.half_height : std::tan(0.5F * camera.vertical_fov)),
-      near_(camera.near),
-      far_(camera.far),
       size_{float(width), float(height)} {
   half_width_ = half_height_ * size_.x / size_.y;
 }
@@ -31,10 +29,7 @@ Ray CameraRays::at(Vec2f film) const {
   const Vec3f toward = orthographic_ ? Vec3f{0, 0, -1} : Vec3f{x, y, -1};
   Ray ray;
   ray.origin = transform_point(world_from_camera_, local_origin);
-  const float stretch = length(toward);
   ray.direction = normalize(transform_direction(world_from_camera_, toward));
-  ray.near = near_ * stretch;
-  ray.far = far_ * stretch;
   return ray;
 }
 

@@ -4,8 +4,8 @@
 
 namespace chiaro::renderer {
 
-// Turns film positions into rays. The film's height always shows the camera's vertical field; its width follows the
-// frame.
+// Turns film positions into rays. They are not clipped: near and far planes are a rasterizer's need. The film's height
+// always shows the camera's vertical field; its width follows the frame.
 class CameraRays {
  public:
   CameraRays(const Camera& camera, int width, int height);
@@ -16,7 +16,6 @@ class CameraRays {
   Mat4f world_from_camera_;
   bool orthographic_;
   float half_width_, half_height_;  // at unit distance, or in metres where orthographic
-  float near_, far_;
   Vec2f size_;
 };
 

@@ -45,6 +45,7 @@ struct PathTracer::Vertex {
   float pdf(Vec3f to_light) const {
     return bsdf != nullptr ? bsdf->pdf(to_viewer, to_light) : std::max(0.0F, dot(normal, to_light)) * kInvPi;
   }
+  Vec3f pick_normal() const { return bsdf != nullptr ? bsdf->normal() : normal; }
   Vec3f ray_origin() const { return offset_point(position, normal); }
 };
 
@@ -71,37 +72,38 @@ void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Sampler& sa
   }
 }
 
-namespace {
-
-// What a light would bring if nothing stood between: one light is picked in proportion to it.
-template <class Vertex>
-float pick_weight(const Vertex& v, const Light& light) {
-  const PunctualSample s = sample_punctual(light, v.position);
-  return max_component(v.eval(s.to_light) * s.irradiance);
+// One light is picked in proportion to the irradiance it would give if nothing stood between.
+float PathTracer::pick_weight(const Vertex& v, std::size_t light) const {
+  const PunctualSample s = sample_punctual(lights_[light], v.position);
+  return std::max(0.0F, dot(v.pick_normal(), s.to_light)) * max_component(s.irradiance);
 }
 
-}  // namespace
-
 std::size_t PathTracer::pick_light(const Vertex& v, float pick, float& probability) const {
-  float total = 0;
-  for (const Light& light : lights_) total += pick_weight(v, light);
-  float left = pick * total;
   std::size_t chosen = lights_.size();
-  for (std::size_t i = 0; i < lights_.size() && total > 0; ++i) {
-    const float weight = pick_weight(v, lights_[i]);
+  float total = 0, chosen_weight = 0;
+  // A reservoir of one: light i replaces the choice with probability weight / total so far, and what is left of `pick`
+  // is stretched to a fresh random number.
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const float weight = pick_weight(v, i);
     if (!(weight > 0)) continue;
-    chosen = i;
-    probability = weight / total;
-    left -= weight;
-    if (left < 0) break;
+    total += weight;
+    const float replace = weight / total;
+    if (pick < replace) {
+      chosen = i;
+      chosen_weight = weight;
+      pick /= replace;
+    } else {
+      pick = (pick - replace) / (1 - replace);
+    }
   }
+  probability = chosen_weight / total;
   return chosen;
 }
 
 float PathTracer::pick_probability(const Vertex& v, std::size_t light) const {
   float total = 0;
-  for (const Light& l : lights_) total += pick_weight(v, l);
-  return total > 0 ? pick_weight(v, lights_[light]) / total : 0;
+  for (std::size_t i = 0; i < lights_.size(); ++i) total += pick_weight(v, i);
+  return total > 0 ? pick_weight(v, light) / total : 0;
 }
 
 // Beyond vertex 0, where one light is enough. Weighted against a ray from that light having ended here.

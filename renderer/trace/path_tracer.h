@@ -58,6 +58,7 @@ class PathTracer {
   void add_one_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_light_subpath(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   std::size_t pick_light(const Vertex& vertex, float pick, float& probability) const;
+  float pick_weight(const Vertex& vertex, std::size_t light) const;
   float pick_probability(const Vertex& vertex, std::size_t light) const;
   void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   float visibility(Vec3f origin, Vec3f to_light, float distance, Sampler& sampler) const;

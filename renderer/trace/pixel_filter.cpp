@@ -3,7 +3,7 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr int kQuantiles = 256;
+constexpr int kQuantiles = 2048;
 constexpr float kRadius = 1.5F;
 
 double blackman_harris_window(double x) {  // x in 0 … 1 across the window
@@ -20,7 +20,7 @@ PixelFilter PixelFilter::box() {
 }
 
 PixelFilter PixelFilter::blackman_harris() {
-  constexpr int kSteps = 4096;
+  constexpr int kSteps = 1 << 16;
   double total = 0;
   for (int i = 0; i < kSteps; ++i) total += blackman_harris_window((i + 0.5) / kSteps);
   PixelFilter filter;

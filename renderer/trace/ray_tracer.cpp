@@ -1,6 +1,5 @@
 #include "renderer/trace/ray_tracer.h"
 
-#include <bit>
 #include <cstring>
 
 #include <embree3/rtcore.h>
@@ -194,18 +193,9 @@ bool RayTracer::occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed)
 }
 
 Vec3f offset_point(Vec3f point, Vec3f normal) {
-  constexpr float kOrigin = 1.0F / 32, kFloatScale = 1.0F / 65536, kIntScale = 256;
-  Vec3f moved;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float p = point[axis], n = normal[axis];
-    if (std::abs(p) < kOrigin) {
-      moved[axis] = p + kFloatScale * n;
-    } else {
-      const auto steps = std::int32_t(kIntScale * n);
-      moved[axis] = std::bit_cast<float>(std::bit_cast<std::int32_t>(p) + (p < 0 ? -steps : steps));
-    }
-  }
-  return moved;
+  // By the largest coordinate, not each by its own: on a wall at x = 0 the error of x is that of the others.
+  constexpr float kRelative = 1e-5F, kLeastMagnitude = 1.0F / 32;
+  return point + (kRelative * std::max(max_component(abs(point)), kLeastMagnitude)) * normal;
 }
 
 }  // namespace chiaro::renderer

@@ -47,7 +47,6 @@ class RayTracer {
 };
 
 // `point` moved off its surface to the side of `normal`, by a distance that float rounding at its magnitude calls for.
-// Source: Wächter & Binder, A Fast and Robust Method for Avoiding Self-Intersection, 2019.
 Vec3f offset_point(Vec3f point, Vec3f normal);
 
 }  // namespace chiaro::renderer

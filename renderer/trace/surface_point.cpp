@@ -56,7 +56,8 @@ std::optional<Vec4f> tangent_at(const Locus& at, int uv_set) {
   const float det = du1 * dv2 - du2 * dv1;
   if (det == 0) return std::nullopt;
   const Vec3f d = (dv2 * e1 - dv1 * e2) / det;
-  return Vec4f{d.x, d.y, d.z, det < 0 ? -1.0F : 1.0F};
+  // v grows downwards in the picture, so that coordinates which are not mirrored turn the other way round.
+  return Vec4f{d.x, d.y, d.z, det < 0 ? 1.0F : -1.0F};
 }
 
 // Normal maps, as glTF has them: +Y up in the texture, tangent space of the object's normal.

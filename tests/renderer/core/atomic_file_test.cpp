@@ -1,0 +1,93 @@
+#include "renderer/core/atomic_file.h"
+
+#include <fstream>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/error.h"
+
+namespace chiaro::renderer {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFile : public ::testing::Test {
+ protected:
+  AtomicFile() : folder_(fs::path(testing::TempDir()) / ("chiaro_atomic_file_" + std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~AtomicFile() override { fs::remove_all(folder_); }
+
+  std::size_t files() const {
+    return std::size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+  fs::path file() const { return folder_ / "frame.exr"; }
+
+  fs::path folder_;
+};
+
+TEST_F(AtomicFile, WritesAndReadsBytes) {
+  const std::string bytes("a\0b\xff\n", 5);
+  write_file_atomically(file(), bytes);
+  EXPECT_EQ(read_file(file()), bytes);
+  write_file_atomically(file(), "");
+  EXPECT_EQ(read_file(file()), "");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFile, IsWrittenBesideUnderAnotherNameOfTheSameKind) {
+  write_file_atomically(file(), "old");
+  write_atomically(file(), [&](const fs::path& aside) {
+    EXPECT_NE(aside, file());
+    EXPECT_EQ(aside.parent_path(), folder_);
+    EXPECT_EQ(aside.extension(), ".exr");
+    std::ofstream(aside) << "new";
+    EXPECT_EQ(read_file(file()), "old");
+  });
+  EXPECT_EQ(read_file(file()), "new");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFile, FailureLeavesNothingBehindAndTheOldFile) {
+  const auto half = [](const fs::path& aside) {
+    std::ofstream(aside) << "half";
+    throw Interruption();
+  };
+  EXPECT_THROW(write_atomically(file(), half), Interruption);
+  EXPECT_EQ(files(), 0U);
+  write_file_atomically(file(), "old");
+  EXPECT_THROW(write_atomically(file(), half), Interruption);
+  EXPECT_EQ(read_file(file()), "old");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFile, WritingNothingIsAnError) {
+  write_file_atomically(file(), "old");
+  EXPECT_THROW(write_atomically(file(), [](const fs::path&) {}), Error);
+  EXPECT_EQ(read_file(file()), "old");
+}
+
+TEST_F(AtomicFile, FoldersThatAreMissingOrInTheWayAreErrors) {
+  bool called = false;
+  const auto note = [&](const fs::path&) { called = true; };
+  EXPECT_THROW(write_atomically(folder_ / "missing" / "frame.exr", note), Error);
+  EXPECT_THROW(write_atomically(folder_, note), Error);
+  EXPECT_FALSE(called);
+}
+
+TEST_F(AtomicFile, ReadingWhatIsNoFileIsAnErrorThatNamesIt) {
+  for (const fs::path& path : {folder_ / "missing", folder_}) {
+    try {
+      read_file(path);
+      FAIL() << path;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.parts().file, path.string());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chiaro::renderer

@@ -1,0 +1,85 @@
+#include "renderer/trace/texture_lookup.h"
+
+#include <gtest/gtest.h>
+
+namespace chiaro::renderer {
+namespace {
+
+// Four texels in a row: red 0, 51, 102, 255.
+Texture row(Wrap wrap = Wrap::kRepeat) {
+  Texture texture{"", 4, 1, {}};
+  for (const std::uint8_t v : {0, 51, 102, 255}) texture.rgba.insert(texture.rgba.end(), {v, 0, 0, v});
+  texture.wrap_u = texture.wrap_v = wrap;
+  return texture;
+}
+
+float red(const Texture& texture, float u) { return look_up(texture, {u, 0.5F}, false).x; }
+
+TEST(TextureLookup, TexelCentresAreExactAndBetweenThemIsLinear) {
+  const Texture texture = row();
+  EXPECT_NEAR(red(texture, 0.125F), 0.0F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.375F), 0.2F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.625F), 0.4F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.875F), 1.0F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.5F), 0.3F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.4375F), 0.25F, 1e-6F);
+}
+
+TEST(TextureLookup, IsBilinear) {
+  Texture texture{"", 2, 2, {}};
+  for (const std::uint8_t v : {0, 51, 102, 255}) texture.rgba.insert(texture.rgba.end(), {v, v, v, 255});
+  texture.wrap_u = texture.wrap_v = Wrap::kClampToEdge;
+  EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, false).y, (0 + 0.2F + 0.4F + 1) / 4, 1e-6F);
+  // A quarter of the way to the right, three quarters down.
+  const float expected = 0.25F * (0.75F * 0 + 0.25F * 0.2F) + 0.75F * (0.75F * 0.4F + 0.25F * 1);
+  EXPECT_NEAR(look_up(texture, {0.375F, 0.625F}, false).z, expected, 1e-6F);
+  // Rows start at the top.
+  EXPECT_NEAR(look_up(texture, {0.25F, 0.75F}, false).x, 0.4F, 1e-6F);
+}
+
+TEST(TextureLookup, WrapsAsAsked) {
+  // The texel that the coordinate u - 1/4 of the first one lies on: the last, the first mirrored, the first.
+  EXPECT_NEAR(red(row(Wrap::kRepeat), -0.125F), 1, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kMirroredRepeat), -0.125F), 0, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kClampToEdge), -0.125F), 0, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kRepeat), 1.375F), 0.2F, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kMirroredRepeat), 1.375F), 0.4F, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kClampToEdge), 1.375F), 1, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kMirroredRepeat), 2.375F), 0.2F, 1e-6F);
+  // Across the seam.
+  EXPECT_NEAR(red(row(Wrap::kRepeat), 0), 0.5F, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kMirroredRepeat), 1), 1, 1e-6F);
+  EXPECT_NEAR(red(row(Wrap::kClampToEdge), 0), 0, 1e-6F);
+}
+
+TEST(TextureLookup, NearestTakesTheTexelUnderTheCoordinate) {
+  Texture texture = row();
+  texture.nearest = true;
+  EXPECT_NEAR(red(texture, 0.26F), 0.2F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.49F), 0.2F, 1e-6F);
+  EXPECT_NEAR(red(texture, 0.51F), 0.4F, 1e-6F);
+}
+
+TEST(TextureLookup, ColourIsDecodedBeforeFilteringAndAlphaNever) {
+  Texture texture{"", 2, 1, {0, 188, 10, 0, 255, 188, 10, 102}};
+  texture.wrap_u = Wrap::kClampToEdge;
+  const Vec4f middle = look_up(texture, {0.5F, 0.5F}, true);
+  EXPECT_NEAR(middle.x, 0.5F, 1e-6F);
+  EXPECT_NEAR(middle.y, 0.502887F, 1e-5F);           // the power law
+  EXPECT_NEAR(middle.z, 10 / 255.0F / 12.92F, 1e-6F);  // the straight part
+  EXPECT_NEAR(middle.w, 0.2F, 1e-6F);
+}
+
+TEST(TextureLookup, LargeAndBrokenCoordinatesAreHarmless) {
+  const float big[] = {1e5F + 0.375F, -1e5F + 0.375F};
+  for (const float u : big) EXPECT_NEAR(red(row(), u), 0.2F, 0.05F);
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge}) {
+    for (const float u : {1e30F, -1e30F, kInfinity, -kInfinity, std::nanf("")}) {
+      const float value = red(row(wrap), u);
+      EXPECT_TRUE(value >= 0 && value <= 1) << u;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
