@@ -3,6 +3,7 @@
 
 #include "inverse/solve/choose_light_count.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 
@@ -11,16 +12,28 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostCuts = 16;          // sizes of the light tree's cuts that are refined
-constexpr double kKnee = 1.25;         // further lights must lower the error by this factor to be believed
-constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
-constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
+constexpr int kMostCuts = 16;                // sizes of the light tree's cuts that are refined
+constexpr double kKnee = 1.25;               // further lights must lower the error by this factor to be believed
+constexpr double kNoiseMargin = 1.02;        // an error this close to the noise is explained
+constexpr std::size_t kDarkest = 16;         // receivers in front of which a light is tried …
+constexpr std::size_t kCloseInsertions = 4;  // … the best of which are refined
+constexpr float kFarthestInFront = 0.05F, kNearestInFront = 0.0005F;  // … at these parts of the region's diagonal
+// Along the normal, and around it at 30 and at 60 degrees.
+constexpr Vec3f kDirectionsInFront[] = {
+    {0, 0, 1},         {.5F, 0, .87F},     {-.25F, .43F, .87F}, {-.25F, -.43F, .87F}, {.87F, 0, .5F},
+    {.43F, .75F, .5F}, {-.43F, .75F, .5F}, {-.87F, 0, .5F},     {-.43F, -.75F, .5F},  {.43F, -.75F, .5F}};
+constexpr int kIdleInsertions = 2;  // insertions in a row that may gain nothing
 
 class Search {
  public:
-  Search(const LightResponse& response, const Observations& observations, const LightTree& tree,
-         const LightCountOptions& options)
-      : response_(response), observations_(observations), tree_(tree), options_(options), start_(Clock::now()) {}
+  Search(const LightResponse& response, const ExactIndirect& exact, const Observations& observations,
+         const LightTree& tree, const LightCountOptions& options)
+      : response_(response),
+        exact_(exact),
+        observations_(observations),
+        tree_(tree),
+        options_(options),
+        start_(Clock::now()) {}
 
   LightCountResult run() {
     refine_cuts();
@@ -43,9 +56,13 @@ class Search {
     return out_of_time_;
   }
 
-  // Refines, drops lights that went out, and keeps the set if it is the best of its size.
-  bool consider(const LightEstimates& start) {
-    JointRefinement refined = refine_joint(response_, observations_, start);
+  // Refines, drops lights that went out, and keeps the set if it is the best of its size. Indirect light is made exact
+  // before the descent and once more where it led.
+  bool consider(LightEstimates start) {
+    exact_.correct(response_, start);
+    LightEstimates reached = refine_joint(response_, observations_, start).lights;
+    exact_.correct(response_, reached);
+    JointRefinement refined = refine_joint(response_, observations_, reached);
     ++refinements_;
     std::erase_if(refined.lights, [](const LightEstimate& l) { return !(l.intensity > 0).any(); });
     const std::size_t count = refined.lights.size();
@@ -67,7 +84,7 @@ class Search {
   std::size_t knee() const {
     double least = std::numeric_limits<double>::infinity();
     for (const Candidate& c : best_) least = std::min(least, c.error);
-    const double enough = std::max(kKnee * least, kNoiseMargin * options_.noise_floor);
+    const double enough = std::max(kKnee * least, kNoiseMargin * observations_.noise);
     std::size_t size = 1;
     while (size + 1 < best_.size() && !(best_[size].error <= enough)) ++size;
     return size;
@@ -78,35 +95,85 @@ class Search {
     return total_illumination(columns, lights, observations_.wanted.rows());
   }
 
-  // The grid light whose unity column explains most of the residual, with the intensity that does.
-  LightEstimate best_insertion(const LightEstimates& lights) const {
+  // What a light at this place would explain of the residual, and the intensity that would do it.
+  struct Insertion {
+    LightEstimate light{Eigen::Vector3d::Zero(), Eigen::Array3d::Zero()};
+    double gain = -1;
+  };
+  Insertion insertion_at(const Eigen::Vector3d& position, const Column& column, const Column& weighted_residual) const {
     const Eigen::VectorXd weight = observations_.sqrt_weight.cwiseAbs2();
-    const Column residual = weight.asDiagonal() * (observations_.wanted - illumination_of(lights));
-    LightEstimate best{Eigen::Vector3d::Zero(), Eigen::Array3d::Zero()};
-    double best_gain = -1;
+    const Eigen::Array3d along = column.cwiseProduct(weighted_residual).colwise().sum().transpose().array().max(0);
+    const Eigen::Array3d squared = (weight.asDiagonal() * column).cwiseProduct(column).colwise().sum().transpose();
+    return {{position, along / squared.max(1e-300)}, (along.square() / squared.max(1e-300)).sum()};
+  }
+
+  // The best of the grid's lights, and the best few places in front of the receivers that lack most light: a light
+  // right beside a surface, or inside a fixture, is seen by hardly anything else.
+  LightEstimates insertions(const LightEstimates& lights) const {
+    const Column residual = observations_.wanted - illumination_of(lights);
+    const Column weighted = observations_.sqrt_weight.cwiseAbs2().asDiagonal() * residual;
+    Insertion best;
     for (std::size_t j = 0; j < response_.grid().positions.size(); ++j) {
-      const Column column = response_.grid_column(j);
-      const Eigen::Array3d along = column.cwiseProduct(residual).colwise().sum().transpose().array().max(0);
-      const Eigen::Array3d squared = (weight.asDiagonal() * column).cwiseProduct(column).colwise().sum().transpose();
-      const double gain = (along.square() / squared.max(1e-300)).sum();
-      if (gain <= best_gain) continue;
-      best_gain = gain;
       const Vec3f p = response_.grid().positions[j];
-      best = {Eigen::Vector3d(p.x, p.y, p.z), along / squared.max(1e-300)};
+      const Insertion i = insertion_at({p.x, p.y, p.z}, response_.grid_column(j), weighted);
+      if (i.gain > best.gain) best = i;
     }
-    return best;
+    LightEstimates places;
+    for (const Eigen::Vector3d& p : places_in_front_of_darkest(residual)) places.push_back({p, Eigen::Array3d::Ones()});
+    const std::vector<Column> columns = evaluate_columns(response_, places, VisibilitySource::kTraced);
+    std::vector<Insertion> close;
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      // By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
+      const Column direct = columns[j] - response_.interpolated_indirect(places[j].position);
+      close.push_back(insertion_at(places[j].position, direct, weighted));
+    }
+    std::stable_sort(close.begin(), close.end(),
+                     [](const Insertion& a, const Insertion& b) { return a.gain > b.gain; });
+    LightEstimates chosen;
+    for (std::size_t j = 0; j < std::min(kCloseInsertions, close.size()); ++j) chosen.push_back(close[j].light);
+    chosen.push_back(best.light);
+    return chosen;
+  }
+
+  void consider_insertions(const LightEstimates& lights) {
+    for (const LightEstimate& inserted : insertions(lights)) {
+      LightEstimates grown = lights;
+      grown.push_back(inserted);
+      consider(grown);
+    }
+  }
+
+  std::vector<Eigen::Vector3d> places_in_front_of_darkest(const Column& residual) const {
+    std::vector<std::pair<double, std::size_t>> lack;
+    for (Eigen::Index i = 0; i < residual.rows(); ++i) {
+      const double painted = observations_.sqrt_weight[i] > 0 ? 1 : 0;
+      lack.emplace_back(-painted * residual.row(i).sum(), std::size_t(i));
+    }
+    std::partial_sort(lack.begin(), lack.begin() + std::min<std::ptrdiff_t>(kDarkest, std::ssize(lack)), lack.end());
+    std::vector<Eigen::Vector3d> places;
+    const Box3f& region = response_.grid().region;
+    for (std::size_t k = 0; k < std::min<std::size_t>(kDarkest, lack.size()); ++k) {
+      const renderer::SurfaceSample& at = response_.receivers()[lack[k].second];
+      const renderer::Frame3f frame(at.normal);
+      for (const Vec3f& direction : kDirectionsInFront) {
+        const Vec3f d = frame.world_from_local(direction);
+        for (float t = kFarthestInFront; t > kNearestInFront; t /= 1.5F) {
+          const Vec3f p = at.position + t * region.diagonal() * d;
+          if (region.contains(p)) places.emplace_back(p.x, p.y, p.z);
+        }
+      }
+    }
+    return places;
   }
 
   void insert_lights() {
-    if (best_.size() < 2) consider({best_insertion({})});
+    if (best_.size() < 2) consider_insertions({});
     int idle = 0;
     for (std::size_t size = knee(); idle < kIdleInsertions && int(size) < most_lights() && !out_of_time(); ++size) {
       if (size >= best_.size() || best_[size].lights.empty()) break;
       const double before = best_[knee()].error;
-      if (before <= options_.noise_floor * kNoiseMargin && options_.exact_lights == 0) break;
-      LightEstimates grown = best_[size].lights;
-      grown.push_back(best_insertion(grown));
-      consider(grown);
+      if (before <= observations_.noise * kNoiseMargin && options_.exact_lights == 0) break;
+      consider_insertions(LightEstimates(best_[size].lights));
       idle = best_.size() > size + 1 && best_[size + 1].error * kKnee < before ? 0 : idle + 1;
     }
   }
@@ -148,6 +215,7 @@ class Search {
   }
 
   const LightResponse& response_;
+  const ExactIndirect& exact_;
   const Observations& observations_;
   const LightTree& tree_;
   LightCountOptions options_;
@@ -159,9 +227,10 @@ class Search {
 
 }  // namespace
 
-LightCountResult choose_light_count(const LightResponse& response, const Observations& observations,
-                                    const LightTree& tree, const LightCountOptions& options) {
-  return Search(response, observations, tree, options).run();
+LightCountResult choose_light_count(const LightResponse& response, const ExactIndirect& exact,
+                                    const Observations& observations, const LightTree& tree,
+                                    const LightCountOptions& options) {
+  return Search(response, exact, observations, tree, options).run();
 }
 
 }  // namespace chiaro::inverse

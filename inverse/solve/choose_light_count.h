@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "inverse/solve/exact_indirect.h"
 #include "inverse/solve/light_clusters.h"
 #include "inverse/solve/refine_joint.h"
 
@@ -26,7 +27,8 @@ struct LightCountResult {
 
 // Every cut of the light tree is refined jointly; then lights are inserted where the residual asks for them, and taken
 // away one by one, as long as that gains anything (backward elimination).
-LightCountResult choose_light_count(const LightResponse& response, const Observations& observations,
-                                    const LightTree& tree, const LightCountOptions& options);
+LightCountResult choose_light_count(const LightResponse& response, const ExactIndirect& exact,
+                                    const Observations& observations, const LightTree& tree,
+                                    const LightCountOptions& options);
 
 }  // namespace chiaro::inverse

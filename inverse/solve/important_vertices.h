@@ -21,8 +21,8 @@ struct Importance {
   std::vector<std::size_t> chosen;   // the important vertices, ascending
 };
 
-// Drawn without replacement with `total` as the density; all vertices of positive weight where there are fewer than
-// count.
+// Drawn without replacement with `total` as the density, after the few that hold most of the target's energy; all
+// vertices of positive weight where there are fewer than count.
 Importance choose_important_vertices(const renderer::RayTracer& tracer, const Target& target,
                                      const ImportanceOptions& options);
 

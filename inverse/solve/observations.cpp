@@ -1,9 +1,38 @@
 #include "inverse/solve/observations.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "inverse/numerics/nnls.h"
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
+namespace {
+
+constexpr double kModelError = 0.02;  // of a receiver's brightness: what interpolation and transport noise leave
+
+}  // namespace
+
+Observations weighted_by_confidence(const Observations& observations, const Column& target,
+                                    const Eigen::VectorXd& standard_error) {
+  const Eigen::VectorXd brightness = target.rowwise().norm();
+  std::vector<double> sorted(brightness.data(), brightness.data() + brightness.size());
+  std::sort(sorted.begin(), sorted.end());
+  // The mean without the brightest twentieth.
+  const auto kept = std::ptrdiff_t(sorted.size() - sorted.size() / 20);
+  const double mean = std::accumulate(sorted.begin(), sorted.begin() + kept, 0.0) / double(kept);
+  Observations weighted = observations;
+  double noise = 0;
+  for (Eigen::Index i = 0; i < brightness.size(); ++i) {
+    const double model = kModelError * std::max(brightness[i], mean);
+    const double noise_squared = standard_error.size() > 0 ? 3 * standard_error[i] * standard_error[i] : 0;
+    weighted.sqrt_weight[i] *= kModelError * mean / std::sqrt(model * model + noise_squared);
+    noise += weighted.sqrt_weight[i] * weighted.sqrt_weight[i] * noise_squared;
+  }
+  weighted.target_norm = (weighted.sqrt_weight.asDiagonal() * target).norm();
+  weighted.noise = std::sqrt(noise) / weighted.target_norm;
+  return weighted;
+}
 
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity) {
   return (observations.sqrt_weight.asDiagonal() * column * intensity.matrix().asDiagonal()).norm();
@@ -48,8 +77,10 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      VisibilitySource visibility) {
   std::vector<Column> columns(lights.size());
-  renderer::parallel_for(lights.size(),
-                         [&](std::size_t j) { columns[j] = response.evaluate(lights[j].position, visibility); });
+  renderer::parallel_for(lights.size(), [&](std::size_t j) {
+    columns[j] = response.evaluate(lights[j].position, visibility);
+    if (lights[j].correction.size() > 0) columns[j] += lights[j].correction;
+  });
   return columns;
 }
 

@@ -12,12 +12,21 @@ struct Observations {
   Column wanted;  // cd/m², the fixed part (emission, kept lights) taken off
   Eigen::VectorXd sqrt_weight;
   double target_norm = 0;  // √Σ weight · Ψ², of the whole target at these vertices: the denominator of (3.6)
+  double noise = 0;        // relative error that the target's own noise gives; 0: not known
 };
+
+// The same with every receiver weighted by how well its value can be known: by the target's standard error there
+// (empty: none) and a model error in proportion to its brightness, or to the mean where it is darker. So a few
+// receivers right beside a light do not hide all other light, and noisy ones do not call for lights of their own.
+// target: Ψ, with the fixed part, cd/m².
+Observations weighted_by_confidence(const Observations& observations, const Column& target,
+                                    const Eigen::VectorXd& standard_error);
 
 // A light being sought.
 struct LightEstimate {
   Eigen::Vector3d position;  // metres
   Eigen::Array3d intensity;  // candela per channel, ≥ 0
+  Column correction{};       // added to its unity response wherever it moves; empty: none
 };
 using LightEstimates = std::vector<LightEstimate>;
 
@@ -38,7 +47,7 @@ struct IntensityFit {
 };
 IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns);
 
-// Columns of all lights, evaluated in parallel.
+// Columns of all lights with their corrections, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      VisibilitySource visibility);
 

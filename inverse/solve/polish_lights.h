@@ -1,15 +1,9 @@
 #pragma once
 
+#include "inverse/solve/exact_indirect.h"
 #include "inverse/solve/refine_joint.h"
 
 namespace chiaro::inverse {
-
-// What the indirect light at the important vertices is computed from.
-struct TransportSource {
-  const renderer::RayTracer& tracer;
-  const std::vector<renderer::SurfaceSample>& receivers;
-  const BakeSettings& settings;
-};
 
 struct PolishedLights {
   LightEstimates lights;
@@ -19,7 +13,7 @@ struct PolishedLights {
 
 // The last descent, without interpolation: indirect light is computed at the lights' very positions, and its difference
 // from the interpolated one is carried along as a constant while the lights are refined; again until they rest.
-PolishedLights polish_lights(const TransportSource& transport, const LightResponse& response,
+PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start);
 
 }  // namespace chiaro::inverse

@@ -15,11 +15,10 @@ constexpr int kLightParameters = 6;  // x, y, z (metres), red, green, blue (cand
 // Residuals of all receivers and channels; one parameter block per light.
 class IlluminationResiduals final : public ceres::CostFunction {
  public:
-  IlluminationResiduals(const LightResponse& response, const Observations& observations,
-                        const std::vector<Column>& corrections, std::size_t light_count)
-      : response_(response), observations_(observations), corrections_(corrections), light_count_(light_count) {
+  IlluminationResiduals(const LightResponse& response, const Observations& observations, const LightEstimates& start)
+      : response_(response), observations_(observations), start_(start), light_count_(start.size()) {
     set_num_residuals(int(3 * observations.wanted.rows()));
-    for (std::size_t j = 0; j < light_count; ++j) mutable_parameter_block_sizes()->push_back(kLightParameters);
+    for (std::size_t j = 0; j < light_count_; ++j) mutable_parameter_block_sizes()->push_back(kLightParameters);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -32,7 +31,7 @@ class IlluminationResiduals final : public ceres::CostFunction {
       } else {
         columns[j].value = response_.evaluate(position, VisibilitySource::kTraced);
       }
-      if (!corrections_.empty()) columns[j].value += corrections_[j];
+      if (start_[j].correction.size() > 0) columns[j].value += start_[j].correction;
     });
     Eigen::Map<Column> out(residuals, m, 3);
     out = -observations_.wanted;
@@ -64,7 +63,7 @@ class IlluminationResiduals final : public ceres::CostFunction {
 
   const LightResponse& response_;
   const Observations& observations_;
-  const std::vector<Column>& corrections_;
+  const LightEstimates& start_;  // for the corrections
   std::size_t light_count_;
 };
 
@@ -113,13 +112,13 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
     blocks.push_back(parameters[j].data());
   }
   ceres::Problem problem;
-  problem.AddResidualBlock(new IlluminationResiduals(response, observations, options.corrections, start.size()),
-                           nullptr, blocks);
+  problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, blocks);
   for (double* block : blocks) set_bounds(problem, block, response.grid().region);
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  for (const Parameters& p : parameters) {
-    result.lights.push_back({Eigen::Vector3d(p.data()), Eigen::Array3d(p[3], p[4], p[5])});
+  for (std::size_t j = 0; j < start.size(); ++j) {
+    const Parameters& p = parameters[j];
+    result.lights.push_back({Eigen::Vector3d(p.data()), Eigen::Array3d(p[3], p[4], p[5]), start[j].correction});
   }
   result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
   result.iterations = int(summary.iterations.size());

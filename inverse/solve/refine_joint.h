@@ -16,8 +16,6 @@ struct JointRefinement {
 struct JointRefinementOptions {
   int max_iterations = 40;
   double function_tolerance = 1e-6;
-  // One column per light, added to its response wherever it moves; empty: none.
-  std::vector<Column> corrections;
 };
 
 // Levenberg–Marquardt over all positions and intensities at once, with analytic Jacobians at fixed visibility;

@@ -59,27 +59,39 @@ std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::ve
   return trace_illumination(problem.tracer, at, problem.kept_lights, trace, control).value;
 }
 
-Observations observe(const Target& target, const std::vector<std::size_t>& chosen, const std::vector<Vec3f>& fixed) {
-  Observations o;
-  const auto m = Eigen::Index(chosen.size());
-  o.wanted.resize(m, 3);
-  o.sqrt_weight.resize(m);
-  double norm = 0;
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const std::size_t r = chosen[std::size_t(i)];
-    o.sqrt_weight[i] = std::sqrt(double(target.weight[r]));
-    for (int c = 0; c < 3; ++c) o.wanted(i, c) = double(target.illumination[r][c] - fixed[std::size_t(i)][c]);
-    norm += double(target.weight[r]) * double(length_squared(target.illumination[r]));
+Column target_at(const Target& target, const std::vector<std::size_t>& chosen) {
+  Column column(Eigen::Index(chosen.size()), 3);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    for (int c = 0; c < 3; ++c) column(Eigen::Index(i), c) = double(target.illumination[chosen[i]][c]);
   }
-  o.target_norm = std::sqrt(norm);
-  return o;
+  return column;
 }
 
-// sqrt(Σ w se²) / sqrt(Σ w Ψ²) over the given receivers; 0 where the target does not say.
-double target_noise(const Target& target, const std::vector<std::size_t>& at) {
+Observations observe(const Target& target, const std::vector<std::size_t>& chosen, const std::vector<Vec3f>& fixed,
+                     SolveMethod method) {
+  Observations o;
+  const Column wanted = target_at(target, chosen);
+  o.wanted = wanted;
+  o.sqrt_weight.resize(wanted.rows());
+  for (Eigen::Index i = 0; i < wanted.rows(); ++i) {
+    o.sqrt_weight[i] = std::sqrt(double(target.weight[chosen[std::size_t(i)]]));
+    for (int c = 0; c < 3; ++c) o.wanted(i, c) -= double(fixed[std::size_t(i)][c]);
+  }
+  o.target_norm = (o.sqrt_weight.asDiagonal() * wanted).norm();
+  if (method == SolveMethod::kThesis) return o;
+  Eigen::VectorXd standard_error;
+  if (!target.standard_error.empty()) {
+    const auto errors = select(target.standard_error, chosen);
+    standard_error = Eigen::Map<const Eigen::VectorXf>(errors.data(), wanted.rows()).cast<double>();
+  }
+  return weighted_by_confidence(o, wanted, standard_error);
+}
+
+// sqrt(Σ w se²) / sqrt(Σ w Ψ²) over all receivers; 0 where the target does not say.
+double target_noise(const Target& target) {
   if (target.standard_error.empty()) return 0;
   double error = 0, value = 0;
-  for (const std::size_t i : at) {
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
     error += 3 * double(target.weight[i]) * double(target.standard_error[i]) * double(target.standard_error[i]);
     value += double(target.weight[i]) * double(length_squared(target.illumination[i]));
   }
@@ -117,9 +129,14 @@ std::vector<FoundLight> found_lights(const LightResponse& response, const Observ
 
 struct Optimum {
   LightEstimates lights;
-  double initial_error = 0, error = 0;
+  LightEstimates start;  // before the last optimisation
   std::string termination;
 };
+
+Column illumination_of(const LightResponse& response, const LightEstimates& lights) {
+  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  return total_illumination(columns, lights, Eigen::Index(response.receiver_count()));
+}
 
 // Sections 3.4.2 and 3.4.3.
 Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
@@ -131,27 +148,25 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
   const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
-  return {optimum.lights, cut.error, optimum.error,
-          reached ? "error threshold of the lightcut met" : "every cluster is a light"};
+  return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light"};
 }
 
-Optimum optimize_jointly(const TransportSource& transport, const LightResponse& response,
-                         const Observations& observations, const LightTree& tree, const SolveOptions& options,
-                         double noise, StageClock& clock) {
-  CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
+Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& response, const Observations& observations,
+                         const LightTree& tree, const SolveOptions& options, StageClock& clock) {
+  clock.finish("exact_indirect", {});
+  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
   const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  const LightCountResult count = choose_light_count(
-      response, observations, tree, {options.max_lights, options.exact_lights, noise, options.time_limit});
-  StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}};
+  const LightCountResult count = choose_light_count(response, exact, observations, tree,
+                                                    {options.max_lights, options.exact_lights, options.time_limit});
+  StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", observations.noise}};
   for (std::size_t n = 0; n < count.error_curve.size(); ++n) {
     figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
   }
   clock.finish("joint_refinement", figures);
-  const PolishedLights polished = polish_lights(transport, response, observations, count.lights);
+  const PolishedLights polished = polish_lights(exact, response, observations, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  return {polished.lights, cut.error, polished.error,
-          count.out_of_time ? "time limit" : "no further light explains more"};
+  return {polished.lights, cut.lights, count.out_of_time ? "time limit" : "no further light explains more"};
 }
 
 int verification_samples(const SolveOptions& options, std::size_t receivers) {
@@ -194,8 +209,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
                                                 {"indirect_relative_error", transport.cache.indirect_relative_error}});
   const auto samples = select(problem.target.receivers.samples, importance.chosen);
-  const Observations observations =
-      observe(problem.target, importance.chosen, fixed_illumination(problem, samples, options, control));
+  const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, options, control);
+  const Observations published = observe(problem.target, importance.chosen, fixed, SolveMethod::kThesis);
+  const Observations observations = observe(problem.target, importance.chosen, fixed, options.method);
   if (!(observations.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
   const LightResponse response(problem.tracer, samples, transport.cache);
@@ -210,19 +226,18 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
 
   const LightTree tree = make_light_tree(response, observations, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
-  const double noise = target_noise(problem.target, importance.chosen);
   const double before = clock.total();
   const Optimum optimum = options.method == SolveMethod::kThesis
                               ? optimize_as_published(response, observations, tree, options, clock)
-                              : optimize_jointly({problem.tracer, samples, transport.cache.settings}, response,
-                                                 observations, tree, options, noise, clock);
+                              : optimize_jointly(ExactIndirect(problem.tracer, samples, transport.cache.settings),
+                                                 response, observations, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
   result.lights = found_lights(response, observations, optimum.lights);
-  result.initial_relative_l2 = optimum.initial_error;
-  result.relative_l2_cached = optimum.error;
+  result.initial_relative_l2 = relative_error(published, illumination_of(response, optimum.start));
+  result.relative_l2_cached = relative_error(published, illumination_of(response, optimum.lights));
   result.termination = optimum.termination;
-  result.target_noise = target_noise(problem.target, all_indices(problem.target.receivers.size()));
+  result.target_noise = target_noise(problem.target);
   verify(problem, options, control, result);
   clock.finish("verification",
                {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});

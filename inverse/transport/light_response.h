@@ -29,6 +29,7 @@ class LightResponse {
                 const TransportCache& cache);
 
   std::size_t receiver_count() const { return receivers_.size(); }
+  const std::vector<renderer::SurfaceSample>& receivers() const { return receivers_; }
   const LightGrid& grid() const { return cache_.grid; }
 
   // Positions outside the grid's region take the indirect part of the nearest point of its border.

@@ -42,7 +42,7 @@ std::optional<std::vector<int>> parse_number_ranges(const std::string& text) {
     if (at != end && *at == '-') last = take_number(++at, end);
     if (!last || *last < *first) return std::nullopt;
     for (int n = *first; n <= *last; ++n) numbers.push_back(n);
-    if (at != end && *at++ != ',') return std::nullopt;
+    if (at != end && (*at++ != ',' || at == end)) return std::nullopt;
   }
   return numbers;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -91,6 +92,8 @@ class Header {
 
   std::array<int, 3> counts() const {
     const std::string& text = get<std::string>("grid_counts");
+    if (std::count(text.begin(), text.end(), ',') != 2)
+      throw Error({file_, "header", fmt::format("chiaro:grid_counts is \"{}\"", text), "three whole numbers"});
     std::array<int, 3> counts{};
     std::size_t at = 0;
     for (int a = 0; a < 3; ++a) {
@@ -108,12 +111,24 @@ class Header {
   std::string file_;
 };
 
+// A grid's cells fill its region. False where anything is not finite.
+bool fills_region(const LightGrid& grid) {
+  for (int a = 0; a < 3; ++a) {
+    const float extent = grid.region.extent()[a], tolerance = 1e-3F * grid.spacing[a];
+    const bool spaced = std::abs(grid.spacing[a] * float(grid.counts[a]) - extent) <= tolerance;
+    const bool begun = std::abs(grid.region.min[a] + 0.5F * grid.spacing[a] - grid.origin[a]) <= 1e-3F * extent;
+    if (!spaced || !begun) return false;
+  }
+  return true;
+}
+
 LightGrid read_grid(const Header& header, const std::string& file) {
   LightGrid grid;
   grid.region = {header.vector("region_min"), header.vector("region_max")};
   grid.origin = header.vector("grid_origin");
   grid.spacing = header.vector("grid_spacing");
   grid.counts = header.counts();
+  if (!fills_region(grid)) throw Error({file, "header", "the light grid does not fill its region", kNotACache});
   const auto nodes = parse_number_ranges(header.get<std::string>("grid_nodes"));
   const std::size_t node_count = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
   if (!nodes || nodes->empty() || std::size_t(nodes->back()) >= node_count || node_count > 100'000'000) {

@@ -189,7 +189,9 @@ bool RayTracer::occluded(const Ray& ray) const {
 }
 
 bool RayTracer::occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const {
-  return occluded({from, to - from, 0, 1, alpha_seed});
+  // A little short of `to`: from afar, floats cannot tell it from the surface that it was moved off.
+  constexpr float kShort = 1e-5F;
+  return occluded({from, to - from, 0, 1 - kShort, alpha_seed});
 }
 
 Vec3f offset_point(Vec3f point, Vec3f normal) {

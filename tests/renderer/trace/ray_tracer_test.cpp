@@ -180,33 +180,61 @@ TEST(RayTracer, BlendedSurfacesStopTheirAlphaOfAllRays) {
   }
 }
 
+// Planes of all directions through points `distance` from the origin, 3 × `scale` across; none may hide its own points.
+void expect_no_self_intersection(float scale, float distance) {
+  for (std::uint32_t plane = 0; plane < 20; ++plane) {
+    Sampler sampler(3, plane, 0);
+    const Vec3f n = uniform_direction(sampler.next_2d());
+    const Vec3f center = distance * uniform_direction(sampler.next_2d());
+    const Frame3f frame(n);
+    const Vec3f u = 3 * scale * frame.tangent, v = 3 * scale * frame.bitangent;
+    Scene scene;
+    add_mesh(scene, rectangle(center - 0.5F * (u + v), u, v), lambert({1, 1, 1}), "plane");
+    const RayTracer tracer(scene);
+    for (std::uint32_t k = 0; k < 500; ++k) {
+      Sampler s(4, plane, k);
+      const Vec2f place = s.next_2d();
+      const float spread = k % 2 == 0 ? 0.8F : 1e-3F;
+      const Vec3f at = center + spread * ((place.x - 0.5F) * u + (place.y - 0.5F) * v);
+      const Vec3f eye = at + scale * normalize(n + 0.9F * uniform_direction(s.next_2d()));
+      const auto hit = tracer.intersect({eye, normalize(at - eye), 0, kInfinity, 0});
+      if (!hit) continue;
+      const SurfacePoint point = make_surface_point(scene, {eye, normalize(at - eye), 0, kInfinity, 0}, *hit);
+      const Vec3f origin = offset_point(point.position, point.geometric_normal);
+      EXPECT_LT(length(origin - point.position), 3e-5F + 1e-4F * (scale + distance));
+      const Vec3f away = frame.world_from_local(sample_cosine_hemisphere(s.next_2d()));
+      ASSERT_FALSE(tracer.occluded({origin, away, 0, kInfinity, 0})) << scale << ", " << distance << ", " << plane;
+      ASSERT_FALSE(tracer.occluded_between(origin, eye, 0)) << scale << ", " << distance << ", " << plane;
+      ASSERT_FALSE(tracer.occluded_between(eye, origin, 0)) << scale << ", " << distance << ", " << plane;
+    }
+  }
+}
+
 TEST(OffsetPoint, NeverMeetsItsOwnSurface) {
-  for (const float scale : {0.01F, 1.0F, 1000.0F}) {
-    for (std::uint32_t plane = 0; plane < 20; ++plane) {
-      Sampler sampler(3, plane, 0);
-      const Vec3f n = uniform_direction(sampler.next_2d());
-      const Vec3f center = scale * uniform_direction(sampler.next_2d());
-      const Frame3f frame(n);
-      const Vec3f u = 3 * scale * frame.tangent, v = 3 * scale * frame.bitangent;
-      Scene scene;
-      add_mesh(scene, rectangle(center - 0.5F * (u + v), u, v), lambert({1, 1, 1}), "plane");
-      const RayTracer tracer(scene);
-      for (std::uint32_t k = 0; k < 500; ++k) {
-        Sampler s(4, plane, k);
-        const Vec2f place = s.next_2d();
-        const Vec3f eye = center + (0.8F * place.x - 0.4F) * u + (0.8F * place.y - 0.4F) * v + scale * n;
-        const Vec3f bent = normalize(-n + 0.3F * uniform_direction(s.next_2d()));
-        const Ray ray{eye, bent, 0, kInfinity, 0};
-        const auto hit = tracer.intersect(ray);
-        if (!hit) continue;
-        const SurfacePoint point = make_surface_point(scene, ray, *hit);
-        const Vec3f origin = offset_point(point.position, point.geometric_normal);
-        EXPECT_LT(length(origin - point.position), 3e-5F + 1e-4F * scale);
-        const Vec3f away = frame.world_from_local(sample_cosine_hemisphere(s.next_2d()));
-        ASSERT_FALSE(tracer.occluded({origin, away, 0, kInfinity, 0})) << "scale " << scale << ", plane " << plane;
-        ASSERT_FALSE(tracer.occluded_between(origin, eye, 0)) << "scale " << scale << ", plane " << plane;
-        ASSERT_FALSE(tracer.occluded_between(eye, origin, 0)) << "scale " << scale << ", plane " << plane;
-      }
+  for (const float scale : {0.01F, 1.0F, 1000.0F}) expect_no_self_intersection(scale, scale);
+}
+
+TEST(OffsetPoint, NeverMeetsItsOwnSurfaceNearTheOrigin) {
+  // Where coordinates are small but the surface and the light are not.
+  for (const float scale : {0.01F, 1.0F}) {
+    expect_no_self_intersection(scale, 0);
+    expect_no_self_intersection(scale, 0.01F * scale);
+  }
+}
+
+TEST(OffsetPoint, NoFalseShadowsInTheCornersOfARoom) {
+  // A room with a corner in the origin; points a ten-thousandth from edges and corners, lights all over.
+  Scene scene;
+  add_mesh(scene, test::room({4, 3, 4}), lambert({1, 1, 1}), "room");
+  const RayTracer tracer(scene);
+  for (std::uint32_t k = 0; k < 500; ++k) {
+    Sampler s(5, 0, k);
+    const Vec2f place = s.next_2d(), across = s.next_2d();
+    const Vec3f light{0.1F + 3.8F * place.x, 0.1F + 2.8F * place.y, 0.1F + 3.8F * s.next_1d()};
+    for (const Vec3f p : {Vec3f{0, 1e-4F, 5e-5F}, Vec3f{0, 1e-4F, 4 * across.x}, Vec3f{0, 3 * across.x, 4 * across.y}}) {
+      const Vec3f origin = offset_point(p, {1, 0, 0});
+      EXPECT_FALSE(tracer.occluded_between(light, origin, 0)) << p.y << ", " << p.z;
+      EXPECT_FALSE(tracer.occluded_between(origin, light, 0)) << p.y << ", " << p.z;
     }
   }
 }

@@ -1,0 +1,204 @@
+// The stages of a solve on targets of known lights, direct light only, where the truth is exact.
+
+#include <gtest/gtest.h>
+
+#include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/light_clusters.h"
+#include "inverse/solve/light_distribution.h"
+#include "inverse/solve/optimize_simplex.h"
+#include "inverse/solve/refine_joint.h"
+#include "tests/inverse/solve/painted_corner.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Eigen::Array3d;
+using Eigen::Vector3d;
+using tests::DirectProblem;
+using tests::farthest_from;
+using tests::known_lights;
+using tests::positions_of;
+
+double spacing_of(const DirectProblem& problem) { return double(max_component(problem.response().grid().spacing)); }
+
+double contribution(const DirectProblem& problem, const LightEstimate& light) {
+  const Column column = problem.response().evaluate(light.position, VisibilitySource::kTraced);
+  return contribution_norm(problem.observations(), column, light.intensity);
+}
+
+LightTree tree_of(const DirectProblem& problem) {
+  const LightDistribution distribution = estimate_light_distribution(problem.response(), problem.observations(), 0.02);
+  return make_light_tree(problem.response(), problem.observations(),
+                         segment_distribution(distribution, problem.observations()));
+}
+
+TEST(LightDistribution, GathersAroundTheLights) {
+  for (const std::size_t count : {1U, 2U}) {
+    const DirectProblem problem(known_lights(count));
+    const LightDistribution distribution = estimate_light_distribution(problem.response(), problem.observations(), 0.02);
+    double near = 0, all = 0;
+    for (const LightEstimate& light : distribution.rounds[1].lights) {
+      double nearest = 1e30;
+      for (const LightEstimate& known : known_lights(count)) {
+        nearest = std::min(nearest, (known.position - light.position).norm());
+      }
+      const double c = contribution(problem, light);
+      all += c, near += nearest < 1.5 * spacing_of(problem) ? c : 0;
+    }
+    EXPECT_GT(near, 0.8 * all) << count;
+    const DistributionRound& coarse = distribution.rounds[0];
+    const DistributionRound& fine = distribution.rounds[1];
+    EXPECT_LT(fine.relative_error, coarse.relative_error);
+    for (const DistributionRound& round : distribution.rounds) {
+      EXPECT_GT(round.kept, 0U);
+      EXPECT_LE(round.kept, round.lit);
+      EXPECT_LE(round.lit, round.spread);
+      EXPECT_LE(round.kkt_residual, 1e-6);
+    }
+    EXPECT_EQ(distribution.nodes.size(), fine.lights.size());
+    EXPECT_EQ(distribution.columns.size(), fine.lights.size());
+  }
+}
+
+TEST(LightClusters, OneLightIsOneClusterNearIt) {
+  const LightEstimates known = known_lights(1);
+  const DirectProblem problem(known);
+  const LightDistribution distribution = estimate_light_distribution(problem.response(), problem.observations(), 0.02);
+  const LightEstimates clusters = segment_distribution(distribution, problem.observations());
+  ASSERT_FALSE(clusters.empty());
+  std::size_t strongest = 0;
+  double all = 0;
+  for (std::size_t j = 0; j < clusters.size(); ++j) {
+    all += contribution(problem, clusters[j]);
+    if (contribution(problem, clusters[j]) > contribution(problem, clusters[strongest])) strongest = j;
+  }
+  EXPECT_LT((clusters[strongest].position - known[0].position).norm(), spacing_of(problem));
+  EXPECT_GT(contribution(problem, clusters[strongest]), 0.7 * all);
+}
+
+TEST(LightClusters, TreesMergeContributionsAndIntensities) {
+  const DirectProblem problem(known_lights(3));
+  const LightTree tree = tree_of(problem);
+  ASSERT_GT(tree.tree.leaf_count, 2);
+  EXPECT_EQ(tree.representatives.size(), tree.tree.nodes.size());
+  EXPECT_EQ(tree.columns.size(), tree.tree.nodes.size());
+  for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {
+    const auto& node = tree.tree.nodes[n];
+    if (node.left < 0) continue;
+    const LightEstimate& a = tree.representatives[std::size_t(node.left)];
+    const LightEstimate& b = tree.representatives[std::size_t(node.right)];
+    const LightEstimate& merged = tree.representatives[n];
+    EXPECT_LT((merged.intensity - a.intensity - b.intensity).abs().maxCoeff(), 1e-9);  // (3.8)
+    // (3.7): between its children.
+    const double whole = (a.position - b.position).norm();
+    EXPECT_NEAR((merged.position - a.position).norm() + (merged.position - b.position).norm(), whole, 1e-6);
+  }
+}
+
+TEST(LightClusters, LargerCutsAreAskedForBySizeOrError) {
+  const DirectProblem problem(known_lights(3));
+  const LightTree tree = tree_of(problem);
+  EXPECT_EQ(cut_light_tree(tree, problem.observations(), {0, 2, 2}).lights.size(), 2U);
+  EXPECT_EQ(cut_light_tree(tree, problem.observations(), {1e9, 1, 100}).lights.size(), 1U);
+  const LightCutResult all = cut_light_tree(tree, problem.observations(), {0, 1, 1000});
+  EXPECT_EQ(all.error_curve.size(), all.lights.size());
+  EXPECT_NEAR(all.error_curve.back(), all.error, 1e-12);
+}
+
+TEST(RefineJoint, RecoversPerturbedLightsExactly) {
+  const LightEstimates known = known_lights(2);
+  const DirectProblem problem(known);
+  LightEstimates start = known;
+  start[0].position += Vector3d(0.08, -0.06, 0.05);
+  start[1].position += Vector3d(-0.05, 0.07, 0.06);
+  start[0].intensity *= 1.3;
+  start[1].intensity *= Array3d(0.7, 1.2, 1);
+  JointRefinementOptions options;
+  options.max_iterations = 200;
+  options.function_tolerance = 1e-12;
+  const JointRefinement refined = refine_joint(problem.response(), problem.observations(), start, options);
+  ASSERT_EQ(refined.lights.size(), 2U);
+  EXPECT_LT(refined.error, 1e-4);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_LT((refined.lights[j].position - known[j].position).norm(), 1e-3) << j;
+    EXPECT_LT((refined.lights[j].intensity - known[j].intensity).abs().maxCoeff(), 1e-2) << j;
+  }
+}
+
+TEST(RefineJoint, NeverGetsWorseAndStaysInBounds) {
+  const DirectProblem problem(known_lights(3));
+  const Box3f region = problem.response().grid().region;
+  const std::vector<LightEstimates> starts{{{{0.3, 2.8, 0.3}, {1, 1, 1}}},
+                                           {{{3.9, 0.2, 3.9}, {50, 0, 0}}, {{2, 2, 2}, {1, 1, 1}}}};
+  for (const LightEstimates& start : starts) {
+    const auto columns = evaluate_columns(problem.response(), start, VisibilitySource::kTraced);
+    const double before = relative_error(
+        problem.observations(), total_illumination(columns, start, problem.observations().wanted.rows()));
+    const JointRefinement refined = refine_joint(problem.response(), problem.observations(), start);
+    EXPECT_LE(refined.error, before);
+    for (const LightEstimate& light : refined.lights) {
+      EXPECT_GE(light.intensity.minCoeff(), 0);
+      const Eigen::Vector3f p = light.position.cast<float>();
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_GE(p[a], region.min[a] - 1e-4F);
+        EXPECT_LE(p[a], region.max[a] + 1e-4F);
+      }
+    }
+  }
+}
+
+TEST(RefineJoint, OfNoLightsIsTheErrorOfDarkness) {
+  const DirectProblem problem(known_lights(1));
+  EXPECT_NEAR(refine_joint(problem.response(), problem.observations(), {}).error, 1, 1e-12);
+}
+
+TEST(OptimizeSimplex, LowersTheErrorAndKeepsTheBounds) {
+  const LightEstimates known = known_lights(1);
+  const DirectProblem problem(known, 150);
+  LightEstimates start = known;
+  start[0].position += Vector3d(0.15, -0.1, 0.1);
+  start[0].intensity *= 0.8;
+  const SimplexOptimum optimum = optimize_simplex(problem.response(), problem.observations(), start);
+  ASSERT_EQ(optimum.lights.size(), 1U);
+  EXPECT_LT(optimum.error, 0.02);
+  EXPECT_LT((optimum.lights[0].position - known[0].position).norm(), 0.02 * problem.diagonal());
+  EXPECT_GE(optimum.lights[0].intensity.minCoeff(), 0);
+  EXPECT_GT(optimum.evaluations, 20);
+}
+
+class CountedLights : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(CountedLights, AreCountedAndFound) {
+  const LightEstimates known = known_lights(GetParam());
+  const DirectProblem problem(known);
+  const LightCountResult result =
+      choose_light_count(problem.response(), problem.exact(), problem.observations(), tree_of(problem), {});
+  EXPECT_EQ(result.lights.size(), known.size());
+  EXPECT_LT(farthest_from(known, positions_of(result.lights)), 0.01 * problem.diagonal());
+  EXPECT_LT(result.error, 0.02);
+  ASSERT_GE(result.error_curve.size(), known.size());
+  EXPECT_GT(result.refinements, 0);
+  EXPECT_FALSE(result.out_of_time);
+}
+
+INSTANTIATE_TEST_SUITE_P(OneToThree, CountedLights, ::testing::Values(1U, 2U, 3U));
+
+TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
+  const DirectProblem problem(known_lights(3));
+  const LightTree tree = tree_of(problem);
+  LightCountOptions options;
+  options.max_lights = 2;
+  EXPECT_LE(choose_light_count(problem.response(), problem.exact(), problem.observations(), tree, options).lights.size(),
+            2U);
+  options = {};
+  options.exact_lights = 4;
+  EXPECT_EQ(choose_light_count(problem.response(), problem.exact(), problem.observations(), tree, options).lights.size(),
+            4U);
+  options = {};
+  options.time_limit = 1e-9;
+  EXPECT_TRUE(
+      choose_light_count(problem.response(), problem.exact(), problem.observations(), tree, options).out_of_time);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

@@ -1,0 +1,154 @@
+#include "inverse/transport/receivers.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/error.h"
+#include "renderer/io/load_gltf.h"
+#include "tests/inverse/target/temporary_folder.h"
+#include "tests/support/code_scenes.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::RayTracer;
+using renderer::Scene;
+
+Scene own_scene(const std::string& name) {
+  return renderer::load_gltf(std::filesystem::path(CHIARO_SOURCE_DIR) / "scenes" / name).scene;
+}
+
+std::size_t vertices_that_triangles_use(const Scene& scene) {
+  std::size_t count = 0;
+  for (const renderer::Instance& instance : scene.instances) {
+    const renderer::Mesh& mesh = scene.meshes[instance.mesh];
+    std::vector<bool> used(mesh.positions.size());
+    for (const auto& t : mesh.triangles) {
+      for (const std::uint32_t v : t) used[v] = true;
+    }
+    count += std::size_t(std::count(used.begin(), used.end(), true));
+  }
+  return count;
+}
+
+TEST(Receivers, AreTwentyToFiftyThousandByDefault) {
+  for (const char* name : {"fiveballs.glb", "cornell.glb"}) {
+    const Scene scene = own_scene(name);
+    const Receivers receivers = make_receivers(scene, {});
+    EXPECT_GE(receivers.size(), 20000U) << name;
+    EXPECT_LE(receivers.size(), 50000U) << name;
+    EXPECT_GE(receivers.size(), vertices_that_triangles_use(scene)) << name;
+    EXPECT_EQ(receivers.samples.size(), receivers.size());
+    EXPECT_EQ(receivers.normals.size(), receivers.size());
+    EXPECT_EQ(receivers.parts.size(), scene.instances.size());
+    std::size_t first = 0, triangle = 0;
+    for (const Receivers::Part& part : receivers.parts) {
+      EXPECT_EQ(part.first_receiver, first);
+      EXPECT_EQ(part.first_triangle, triangle);
+      first += part.receiver_count, triangle += part.triangle_count;
+    }
+    EXPECT_EQ(first, receivers.size());
+    EXPECT_EQ(triangle, receivers.triangles.size());
+  }
+}
+
+TEST(Receivers, NeverFewerThanTheScenesVerticesAndNoLongEdge) {
+  const Scene scene = test::corner_with_ball();
+  EXPECT_EQ(make_receivers(scene, {.max_edge = 100}).size(), vertices_that_triangles_use(scene));
+  const Receivers fine = make_receivers(scene, {.max_edge = 0.05F});
+  for (const auto& t : fine.triangles) {
+    for (int k = 0; k < 3; ++k) EXPECT_LE(length(fine.positions[t[k]] - fine.positions[t[(k + 1) % 3]]), 0.05F);
+  }
+}
+
+TEST(Receivers, InstancesAreFlattenedWithTheirNormals) {
+  Scene scene;
+  test::add_mesh(scene, test::sphere({0, 0, 0}, 1, 8), test::lambert({1, 1, 1}), "ball");
+  scene.instances[0].world_from_object = renderer::make_transform({5, 0, 0}, {0, 0, 0, 1}, {-2, 2, 2});
+  scene.instances.push_back({"other", 0, renderer::make_transform({-5, 1, 0}, {0, 0, 0, 1}, {1, 1, 1})});
+  const Receivers receivers = make_receivers(scene, {.max_edge = 100});
+  ASSERT_EQ(receivers.parts.size(), 2U);
+  EXPECT_EQ(receivers.parts[0].name, "ball");
+  EXPECT_EQ(receivers.parts[1].name, "other");
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const bool first = i < receivers.parts[0].receiver_count;
+    const Vec3f center = first ? Vec3f{5, 0, 0} : Vec3f{-5, 1, 0};
+    const Vec3f outward = receivers.positions[i] - center;
+    EXPECT_NEAR(length(outward), first ? 2 : 1, 1e-5F);
+    EXPECT_GT(dot(receivers.normals[i], normalize(outward)), 0.999F);
+  }
+}
+
+TEST(Receivers, SamplesLieOnTheSurfaceCloseToTheirVertex) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const Receivers receivers = make_receivers(scene, {.max_edge = 0.3F});
+  const float diagonal = bounds(scene).diagonal();
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const renderer::SurfaceSample& s = receivers.samples[i];
+    EXPECT_LE(length(s.position - receivers.positions[i]), 3e-5F * diagonal);
+    EXPECT_EQ(s.normal, receivers.normals[i]);
+    // From a little in front of it, the nearest surface behind is at that very distance.
+    const auto hit = tracer.intersect({s.position + 1e-3F * s.normal, -s.normal, 0, 2e-3F, 0});
+    ASSERT_TRUE(hit) << i;
+    EXPECT_NEAR(hit->distance, 1e-3F, 2e-5F) << i;
+  }
+  EXPECT_EQ(fraction_on_surface(tracer, receivers), 1);
+}
+
+TEST(Receivers, RoundTripThroughAMeshFileKeepsTheFingerprint) {
+  const Scene scene = test::corner_with_ball();
+  const Receivers receivers = make_receivers(scene, {.max_edge = 0.2F});
+  const tests::TemporaryFolder folder;
+  save_vertex_mesh(mesh_from_receivers(receivers), folder.path() / "receivers.glb", 1);
+  const Receivers again = receivers_from_mesh(renderer::load_vertex_mesh(folder.path() / "receivers.glb"));
+  EXPECT_EQ(fingerprint(again), fingerprint(receivers));
+  ASSERT_EQ(again.parts.size(), receivers.parts.size());
+  for (std::size_t i = 0; i < again.parts.size(); ++i) EXPECT_EQ(again.parts[i].name, receivers.parts[i].name);
+  for (std::size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again.samples[i].position, receivers.samples[i].position);
+  Receivers moved = receivers;
+  moved.positions[17].y += 1e-5F;
+  EXPECT_NE(fingerprint(moved), fingerprint(receivers));
+}
+
+TEST(Receivers, OfAPlaneUnderALightHaveTheClosedForm) {
+  Scene scene;
+  test::add_mesh(scene, test::rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), test::lambert({1, 1, 1}), "plane");
+  const RayTracer tracer(scene);
+  const Receivers receivers = make_receivers(scene, {.max_edge = 0.2F});
+  ASSERT_GT(receivers.size(), 400U);
+  const Vec3f lamp{0.3F, 1.5F, -0.6F};
+  const auto lit = trace_illumination(tracer, receivers.samples, {renderer::PointLight{"", lamp, {10, 20, 30}}},
+                                      {.samples = 1, .bounces = 0});
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const Vec3f d = lamp - receivers.positions[i];
+    const double expected = 10 * 1.5 / (M_PI * std::pow(double(length(d)), 3));
+    EXPECT_NEAR(lit.value[i].x, expected, 1e-3 * expected);
+    EXPECT_NEAR(lit.value[i].z, 3 * expected, 3e-3 * expected);
+  }
+}
+
+TEST(Receivers, OfAnotherSceneAreToldByTheirPlaces) {
+  const Scene scene = test::corner_with_ball(), other = own_scene("cornell.glb");
+  const RayTracer tracer(scene), other_tracer(other);
+  const Receivers receivers = make_receivers(scene, {.max_edge = 0.2F});
+  EXPECT_EQ(fraction_on_surface(tracer, receivers), 1);
+  EXPECT_LT(fraction_on_surface(other_tracer, receivers), 0.5);
+  EXPECT_LT(fraction_on_surface(tracer, make_receivers(other, {})), 0.5);
+}
+
+TEST(Receivers, OfNothingOrOfTooMuchAreErrors) {
+  EXPECT_THROW(make_receivers({}, {}), renderer::Error);
+  EXPECT_THROW(make_receivers(test::corner_with_ball(), {.max_edge = 1e-5F}), renderer::Error);
+}
+
+TEST(Receivers, AFileWithoutUsableNormalsGetsThoseOfItsFaces) {
+  renderer::VertexMesh mesh;
+  mesh.parts.push_back({});
+  mesh.parts[0].positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+  mesh.parts[0].normals.assign(3, Vec3f{});
+  mesh.parts[0].triangles = {{0, 1, 2}};
+  for (const Vec3f n : receivers_from_mesh(mesh).normals) EXPECT_EQ(n, (Vec3f{0, 1, 0}));
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

@@ -1,0 +1,129 @@
+#include "inverse/transport/split_edges.h"
+
+#include <map>
+#include <span>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/code_scenes.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using renderer::Triangle;
+using renderer::Vec3f;
+
+SurfaceMesh surface(const renderer::Mesh& mesh) { return {mesh.positions, mesh.normals, mesh.triangles}; }
+
+std::vector<SurfaceMesh> samples() {
+  SurfaceMesh needle{{{0, 0, 0}, {10, 0, 0}, {0, 0.1F, 0}}, std::vector<Vec3f>(3, Vec3f{0, 0, 1}), {{0, 1, 2}}};
+  return {surface(test::rectangle({0, 0, 0}, {3, 0, 0}, {0, 1, 0})), surface(test::sphere({1, 2, 3}, 1.5F, 6)),
+          surface(test::sphere({0, 0, 0}, 1, 9, true)), needle};
+}
+
+float longest_edge(const SurfaceMesh& mesh) {
+  float longest = 0;
+  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      longest = std::max(longest, length(mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]));
+    }
+  }
+  return longest;
+}
+
+Vec3f twice_area(const SurfaceMesh& mesh, const Triangle& t) {
+  return cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+}
+
+double area(const SurfaceMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) sum += 0.5 * double(length(twice_area(mesh, t)));
+  return sum;
+}
+
+// How often each directed edge is drawn.
+std::map<std::pair<std::uint32_t, std::uint32_t>, int> edge_uses(const SurfaceMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) ++uses[{t[k], t[(k + 1) % 3]}];
+  }
+  return uses;
+}
+
+TEST(SplitEdges, LeavesNoLongEdgeAndKeepsTheArea) {
+  for (const SurfaceMesh& before : samples()) {
+    for (const float limit : {2.0F, 0.5F, 0.13F}) {
+      SurfaceMesh after = before;
+      split_long_edges(after, limit);
+      EXPECT_LE(longest_edge(after), limit);
+      EXPECT_NEAR(area(after), area(before), 1e-5 * area(before));
+      ASSERT_EQ(after.positions.size(), after.normals.size());
+      for (const Vec3f n : after.normals) EXPECT_NEAR(length(n), 1, 1e-5F);
+    }
+  }
+}
+
+TEST(SplitEdges, KeepsTheOldVerticesFirst) {
+  for (const SurfaceMesh& before : samples()) {
+    SurfaceMesh after = before;
+    split_long_edges(after, 0.3F);
+    ASSERT_GT(after.positions.size(), before.positions.size());
+    for (std::size_t i = 0; i < before.positions.size(); ++i) {
+      EXPECT_EQ(after.positions[i], before.positions[i]);
+      EXPECT_EQ(after.normals[i], before.normals[i]);
+    }
+  }
+}
+
+TEST(SplitEdges, ClosedSurfacesStayClosed) {
+  // Every directed edge once, and once the other way round: no crack, no overlap, no turned triangle. The test's sphere
+  // has its poles as rows of vertices in one place, so a box whose sides share vertices is used.
+  SurfaceMesh box;
+  for (int i = 0; i < 8; ++i) box.positions.push_back({i & 1 ? 3.0F : 0.0F, i & 2 ? 1.0F : 0.0F, i & 4 ? 0.7F : 0.0F});
+  for (const Vec3f p : box.positions) box.normals.push_back(normalize(p - Vec3f{1.5F, 0.5F, 0.35F}));
+  box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  for (const float limit : {1.0F, 0.4F, 0.11F}) {
+    SurfaceMesh after = box;
+    split_long_edges(after, limit);
+    const auto uses = edge_uses(after);
+    for (const auto& [edge, count] : uses) {
+      ASSERT_EQ(count, 1);
+      ASSERT_EQ(uses.count({edge.second, edge.first}), 1U);
+    }
+    const auto triangles = after.triangles.size(), vertices = after.positions.size(), edges = uses.size() / 2;
+    EXPECT_EQ(vertices + triangles, edges + 2);  // Euler
+    // The volume of the box, by the divergence theorem, and so no triangle turned.
+    double volume = 0;
+    for (const Triangle& t : after.triangles) volume += double(dot(after.positions[t[0]], twice_area(after, t))) / 6;
+    EXPECT_NEAR(volume, 3 * 1 * 0.7, 1e-4);
+  }
+}
+
+TEST(SplitEdges, BlendsNormalsAndSurvivesOppositeOnes) {
+  SurfaceMesh mesh{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 1}, {1, 0, 0}, {0, 0, -1}}, {{0, 1, 2}}};
+  split_long_edges(mesh, 2.5F);  // the longest edge alone, between vertices 1 and 2
+  ASSERT_EQ(mesh.positions.size(), 4U);
+  EXPECT_EQ(mesh.positions[3], (Vec3f{1, 1, 0}));
+  EXPECT_NEAR(mesh.normals[3].x, std::sqrt(0.5F), 1e-5F);
+  EXPECT_NEAR(mesh.normals[3].z, -std::sqrt(0.5F), 1e-5F);
+  split_long_edges(mesh, 1.5F);
+  for (const Vec3f n : mesh.normals) EXPECT_NEAR(length(n), 1, 1e-5F);
+}
+
+TEST(SplitEdges, EstimateTellsTheSize) {
+  // Not of the needle: what is said of shapes that common meshes are made of.
+  const std::vector<SurfaceMesh> all = samples();
+  for (const SurfaceMesh& before : std::span(all).first(3)) {
+    for (const float limit : {0.5F, 0.13F, 0.05F}) {
+      SurfaceMesh after = before;
+      split_long_edges(after, limit);
+      const double ratio = estimated_vertices_after_split(before, limit) / double(after.positions.size());
+      EXPECT_GT(ratio, 0.4) << limit;
+      EXPECT_LT(ratio, 2.5) << limit;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

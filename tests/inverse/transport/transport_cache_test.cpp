@@ -1,0 +1,232 @@
+#include "inverse/transport/transport_cache.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "renderer/core/sampler.h"
+#include "renderer/image/image_file.h"
+#include "tests/inverse/target/temporary_folder.h"
+
+namespace chiaro::inverse {
+namespace {
+
+namespace fs = std::filesystem;
+using renderer::Error;
+using renderer::Sampler;
+
+// 3 × 2 × 2 nodes, two of them left out; entries of many magnitudes up to `largest`.
+TransportCache make_cache(float largest) {
+  TransportCache cache;
+  LightGrid& grid = cache.grid;
+  grid.region = {{-1, 0.1F, 2}, {5, 3, 4.5F}};
+  grid.counts = {3, 2, 2};
+  grid.spacing = {2, 1.45F, 1.25F};
+  grid.origin = {0, 0.825F, 2.625F};
+  for (int node = 0; node < 12; ++node) {
+    const bool left_out = node == 4 || node == 5;
+    grid.light_of_node.push_back(left_out ? -1 : int(grid.positions.size()));
+    if (!left_out) {
+      grid.positions.push_back(grid.origin + grid.spacing * Vec3f{float(node % 3), float(node / 3 % 2), float(node / 6)});
+    }
+  }
+  cache.receiver_count = 37;
+  for (std::uint32_t i = 0; i < 10 * 37; ++i) {
+    Sampler sampler(1, i, 0);
+    const float magnitude = largest * std::exp2(-20 * sampler.next_1d());
+    const renderer::Vec2f xy = sampler.next_2d();
+    cache.visibility.push_back(sampler.next_1d() < 0.5F ? 1 : 0);
+    cache.indirect.push_back(magnitude * Vec3f{xy.x, xy.y, i % 7 == 0 ? 0.0F : 1.0F});
+  }
+  cache.indirect[5] = {largest, 0, 0};
+  cache.scene_fingerprint = "0123456789abcdef";
+  cache.receiver_fingerprint = "fedcba9876543210";
+  cache.settings = {.samples = 77, .bounces = 3, .seed = 0xfedcba9876543210ULL, .materials = "albedo 0.5,0.5,0.25"};
+  cache.indirect_relative_error = 0.0123;
+  return cache;
+}
+
+class TransportCacheFile : public ::testing::Test {
+ protected:
+  fs::path path() const { return folder_.path() / "cache.exr"; }
+
+  // Saves the cache with its file's header or pixels changed by edit(file).
+  template <class Edit>
+  void save_edited(const Edit& edit) const {
+    save_transport_cache(make_cache(1), path());
+    renderer::ImageFile file = renderer::load_image(path());
+    edit(file);
+    renderer::save_image(file.image, path(), renderer::PixelType::kHalf, file.attributes);
+  }
+
+  template <class Value>
+  void save_with(const std::string& name, const Value& value) const {
+    save_edited([&](renderer::ImageFile& file) {
+      for (auto& [key, old] : file.attributes) {
+        if (key == "chiaro:" + name) old = value;
+      }
+    });
+  }
+
+  void expect_refused(const std::string& why) const {
+    try {
+      load_transport_cache(path());
+      ADD_FAILURE() << why << " was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.parts().file, path().string()) << why;
+      EXPECT_FALSE(error.parts().problem.empty()) << why;
+    }
+  }
+
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(TransportCacheFile, KeepsEverythingInItsHeader) {
+  const TransportCache cache = make_cache(1);
+  save_transport_cache(cache, path());
+  for (const TransportCache& read : {load_transport_cache_header(path()), load_transport_cache(path())}) {
+    EXPECT_EQ(read.receiver_count, cache.receiver_count);
+    EXPECT_EQ(read.grid.region.min, cache.grid.region.min);
+    EXPECT_EQ(read.grid.region.max, cache.grid.region.max);
+    EXPECT_EQ(read.grid.origin, cache.grid.origin);
+    EXPECT_EQ(read.grid.spacing, cache.grid.spacing);
+    EXPECT_EQ(read.grid.counts, cache.grid.counts);
+    EXPECT_EQ(read.grid.light_of_node, cache.grid.light_of_node);
+    EXPECT_EQ(read.grid.positions, cache.grid.positions);
+    EXPECT_EQ(read.scene_fingerprint, cache.scene_fingerprint);
+    EXPECT_EQ(read.receiver_fingerprint, cache.receiver_fingerprint);
+    EXPECT_EQ(read.settings.samples, cache.settings.samples);
+    EXPECT_EQ(read.settings.bounces, cache.settings.bounces);
+    EXPECT_EQ(read.settings.seed, cache.settings.seed);
+    EXPECT_EQ(read.settings.materials, cache.settings.materials);
+    EXPECT_FLOAT_EQ(float(read.indirect_relative_error), float(cache.indirect_relative_error));
+  }
+}
+
+TEST_F(TransportCacheFile, KeepsEntriesToHalfPrecisionWhateverTheirMagnitude) {
+  // Illumination per candela is 1e6 times a metre's in a scene of millimetres, and 1e-6 times in one of kilometres.
+  for (const float largest : {1e-12F, 1e-6F, 0.3F, 1.0F, 1e6F, 1e12F}) {
+    const TransportCache cache = make_cache(largest);
+    save_transport_cache(cache, path());
+    const TransportCache read = load_transport_cache(path());
+    EXPECT_EQ(read.visibility, cache.visibility);
+    ASSERT_EQ(read.indirect.size(), cache.indirect.size());
+    for (std::size_t i = 0; i < cache.indirect.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        // Half a step of a 10-bit fraction; below a millionth of the largest the steps no longer shrink.
+        const float bound = cache.indirect[i][c] / 2000 + 1e-10F * largest;
+        EXPECT_NEAR(read.indirect[i][c], cache.indirect[i][c], bound) << largest;
+      }
+    }
+  }
+}
+
+TEST_F(TransportCacheFile, ReadsTheColumnsAskedFor) {
+  save_transport_cache(make_cache(1), path());
+  const TransportCache all = load_transport_cache(path());
+  const std::vector<std::size_t> chosen{0, 5, 6, 36};
+  const TransportCache some = load_transport_cache(path(), chosen);
+  ASSERT_EQ(some.receiver_count, 4U);
+  for (std::size_t light = 0; light < 10; ++light) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(some.indirect[light * 4 + i], all.indirect[light * 37 + chosen[i]]);
+      EXPECT_EQ(some.visibility[light * 4 + i], all.visibility[light * 37 + chosen[i]]);
+    }
+  }
+}
+
+TEST_F(TransportCacheFile, WithoutIndirectLightIsFine) {
+  TransportCache cache = make_cache(1);
+  for (Vec3f& v : cache.indirect) v = {};
+  save_transport_cache(cache, path());
+  EXPECT_EQ(load_transport_cache(path()).indirect, cache.indirect);
+}
+
+TEST_F(TransportCacheFile, TruncatedAnywhereIsRefused) {
+  save_transport_cache(make_cache(1), path());
+  const std::string bytes = renderer::read_file(path());
+  for (const double part : {0.0, 0.02, 0.3, 0.6, 0.9, 0.99}) {
+    std::ofstream(path(), std::ios::binary) << bytes.substr(0, std::size_t(part * double(bytes.size())));
+    expect_refused("a file cut to " + std::to_string(part));
+  }
+}
+
+TEST_F(TransportCacheFile, OtherFilesAreRefused) {
+  expect_refused("a missing file");
+  std::ofstream(path()) << "not an image";
+  expect_refused("a text");
+  renderer::save_image(renderer::make_image(8, 8, {"R", "G", "B"}), path(), renderer::PixelType::kHalf);
+  expect_refused("a frame");
+}
+
+TEST_F(TransportCacheFile, HeadersThatDoNotFitAreRefused) {
+  save_with("kind", std::string("frame"));
+  expect_refused("another kind");
+  save_with("format_version", 99);
+  expect_refused("another version");
+  for (const char* counts : {"3,2,3", "3,2", "", "3,2,0", "3,-2,2", "a,b,c", "3,2,2,2", "99999999999,1,1"}) {
+    save_with("grid_counts", std::string(counts));
+    expect_refused(std::string("grid_counts ") + counts);
+  }
+  for (const char* nodes : {"0-11", "0-3", "0-3,6-12", "", "x", "0-3,6-10,99999"}) {
+    save_with("grid_nodes", std::string(nodes));
+    expect_refused(std::string("grid_nodes ") + nodes);
+  }
+  for (const float scale : {0.0F, -1.0F, renderer::kInfinity, std::nanf("")}) {
+    save_with("indirect_scale", scale);
+    expect_refused("indirect_scale " + std::to_string(scale));
+  }
+  save_with("seed", std::string("many"));
+  expect_refused("a seed that is no number");
+  save_with("samples", std::string("77"));
+  expect_refused("an attribute of another type");
+}
+
+TEST_F(TransportCacheFile, MissingAttributesAreRefusedByName) {
+  for (const char* name : {"kind", "format_version", "region_min", "grid_nodes", "scene_fingerprint", "indirect_scale"}) {
+    save_edited([&](renderer::ImageFile& file) {
+      std::erase_if(file.attributes, [&](const auto& a) { return a.first == std::string("chiaro:") + name; });
+    });
+    try {
+      load_transport_cache(path());
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_NE(error.parts().problem.find(name), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(TransportCacheFile, PixelsThatAreNoNumbersOrChannelsThatLackAreRefused) {
+  save_edited([](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 2] = std::nanf(""); });
+  expect_refused("a pixel that is not a number");
+  save_edited([](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 2] = renderer::kInfinity; });
+  expect_refused("an infinite pixel");
+  save_edited([](renderer::ImageFile& file) {
+    for (std::string& name : file.image.channel_names) name = name == "indirect.G" ? "other" : name;
+  });
+  expect_refused("a missing channel");
+}
+
+TEST_F(TransportCacheFile, ChangedBytesNeverCrash) {
+  // One byte of the header after the other; either the change shows in what is read, or the file is refused.
+  save_transport_cache(make_cache(1), path());
+  const std::string bytes = renderer::read_file(path());
+  int refused = 0;
+  for (std::size_t i = 8; i < std::min<std::size_t>(bytes.size(), 1600); i += 7) {
+    std::string changed = bytes;
+    changed[i] = char(changed[i] ^ 0x15);
+    std::ofstream(path(), std::ios::binary) << changed;
+    try {
+      const TransportCache read = load_transport_cache(path());
+      EXPECT_EQ(read.indirect.size(), read.receiver_count * read.grid.positions.size());
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 20);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

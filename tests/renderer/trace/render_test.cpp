@@ -1,0 +1,275 @@
+// Frames of closed forms. Statistical bounds are five standard errors (p < 0.0001 %), seeds are fixed.
+
+#include "renderer/trace/render.h"
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/error.h"
+#include "tests/support/code_scenes.h"
+
+namespace chiaro::renderer {
+namespace {
+
+using test::add_mesh;
+using test::lambert;
+using test::rectangle;
+
+Vec3f rgb(const Image& image, int x, int y, const std::string& layer = "") {
+  const int first = image.find_channel(layer.empty() ? "R" : layer + ".R");
+  EXPECT_GE(first, 0) << layer;
+  const float* p = image.at(x, y) + first;
+  return {p[0], p[1], p[2]};
+}
+
+Vec3f xyz(const Image& image, int x, int y, const std::string& layer) {
+  const float* p = image.at(x, y) + image.find_channel(layer + ".X");
+  return {p[0], p[1], p[2]};
+}
+
+void expect_close(Vec3f a, Vec3f b, float relative) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], relative * (std::abs(b[c]) + 1e-3F));
+}
+
+RenderOptions sized(int width, int height, const TraceOptions& trace) {
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  options.trace = trace;
+  return options;
+}
+
+// Looks down from `height` on the origin; +X to the right, -Z up.
+Camera camera_above(float height) {
+  Camera camera;
+  const float half = std::sqrt(0.5F);
+  camera.world_from_camera = make_transform({0, height, 0}, {-half, 0, 0, half}, {1, 1, 1});
+  camera.vertical_fov = 2 * std::atan(0.5F);
+  return camera;
+}
+
+// The corner and its ball, an emissive lamp over it, and sky beside.
+Scene corner_with_lamp() {
+  Scene scene = test::corner_with_ball();
+  add_mesh(scene, rectangle({1, 2.5F, 1}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {5, 4, 3}), "lamp");
+  return scene;
+}
+
+Lights two_lights() {
+  return {PointLight{"key", {3, 2, 3}, {10, 8, 6}},
+          SpotLight{"rim.left", {1, 2, 3}, {0, -1, 0}, {9, 9, 9}, 0.3F, 0.7F}};
+}
+
+TEST(Render, FurnaceIsOneColourAllOver) {
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, 2, 32, true), lambert({0.5F, 0.5F, 0.5F}, {1, 2, 3}), "furnace");
+  const RayTracer tracer(scene);
+  const Frame frame = render(tracer, camera_above(0.5F), {}, sized(16, 12, {.samples = 256, .seed = 4}));
+  Vec3f mean;
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      mean += rgb(frame.image, x, y) / (16 * 12);
+      expect_close(rgb(frame.image, x, y), {2, 4, 6}, 0.1F);
+      EXPECT_EQ(frame.image.at(x, y)[frame.image.find_channel("A")], 1);
+    }
+  }
+  expect_close(mean, {2, 4, 6}, 0.005F);
+  EXPECT_LT(frame.relative_standard_error, 0.03);
+  EXPECT_EQ(frame.samples, 256);
+}
+
+TEST(Render, DirectlyLitPlaneIsItsClosedForm) {
+  // Radiance of a Lambert surface of albedo ρ: ρ I cosθ / (π d²).
+  Scene scene;
+  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert({0.5F, 0.25F, 1}), "plane");
+  const RayTracer tracer(scene);
+  const Vec3f lamp{0.5F, 1.5F, -0.3F};
+  const Lights lights{PointLight{"", lamp, {10, 20, 30}}};
+  RenderOptions options = sized(32, 32, {.samples = 64, .bounces = 0});
+  for (const bool box : {true, false}) {
+    options.box_filter = box;
+    const Frame frame = render(tracer, camera_above(2), lights, options);
+    for (const auto& [x, y] : {std::pair{3, 5}, {16, 16}, {25, 9}, {0, 31}}) {
+      // The field is 2 m across at the plane, and z falls towards the top.
+      const Vec3f at{(float(x) + 0.5F) / 16 - 1, 0, (float(y) + 0.5F) / 16 - 1};
+      const Vec3f d = lamp - at;
+      const float share = 1.5F * kInvPi / (length_squared(d) * length(d));
+      expect_close(rgb(frame.image, x, y), share * Vec3f{5, 5, 30}, 0.005F);
+    }
+  }
+}
+
+TEST(Render, LayersAddUpToTheBeauty) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(24, 18, {.samples = 16, .seed = 2});
+  options.layers = {"direct", "indirect", "lights"};
+  const Image image = render(tracer, default_camera(scene), two_lights(), options).image;
+  float indirect = 0;
+  for (int y = 0; y < 18; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      const Vec3f beauty = rgb(image, x, y);
+      expect_close(rgb(image, x, y, "direct") + rgb(image, x, y, "indirect"), beauty, 1e-5F);
+      const Vec3f lights = rgb(image, x, y, "light.key") + rgb(image, x, y, "light.rim_left");
+      expect_close(lights + rgb(image, x, y, "light.emission"), beauty, 1e-5F);
+      indirect += luminance(rgb(image, x, y, "indirect"));
+    }
+  }
+  EXPECT_GT(indirect, 0);
+}
+
+TEST(Render, SeparateLightsAreWhatEachWouldGiveAlone) {
+  // Two frames of independent noise; five standard errors of their difference.
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(16, 12, {.samples = 256, .seed = 2});
+  options.layers = {"lights"};
+  const Lights both = two_lights();
+  const Frame together = render(tracer, default_camera(scene), both, options);
+  options.trace.seed = 3;
+  options.layers = {"variance"};
+  const Frame alone = render(tracer, default_camera(scene), {both[1]}, options);
+  double a = 0, b = 0, variance = 0;
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      a += double(rgb(together.image, x, y, "light.rim_left").y);
+      b += double(rgb(alone.image, x, y).y);
+      variance += double(rgb(alone.image, x, y, "variance").y);
+    }
+  }
+  EXPECT_GT(b, 0);
+  EXPECT_NEAR(a, b, 5 * std::sqrt(2 * variance));
+}
+
+TEST(Render, AlphaIsTheCoverageOfThePixel) {
+  // The left half of the frame, up to the middle of column 8, is covered.
+  Scene scene;
+  add_mesh(scene, rectangle({-2, 0, -2}, {0, 0, 4}, {2 + 0.5F / 16 * 2, 0, 0}), lambert({1, 1, 1}), "half");
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(16, 16, {.samples = 256});
+  options.box_filter = true;
+  options.layers = {"depth"};
+  const Image image = render(tracer, camera_above(2), {}, options).image;
+  const int alpha = image.find_channel("A"), depth = image.find_channel("depth.Z");
+  for (int x = 0; x < 16; ++x) {
+    const float covered = x < 8 ? 1 : x == 8 ? 0.5F : 0;
+    EXPECT_NEAR(image.at(x, 7)[alpha], covered, 0.01F) << x;
+    EXPECT_EQ(std::isfinite(image.at(x, 7)[depth]), covered > 0) << x;
+  }
+}
+
+TEST(Render, GeometryLayersTellWhatIsSeen) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(20, 16, {.samples = 1, .bounces = 0});
+  options.layers = {"albedo", "normal", "position", "depth"};
+  const Camera camera = default_camera(scene);
+  const Image image = render(tracer, camera, two_lights(), options).image;
+  const Vec3f eye = camera.world_from_camera.column(3);
+  int floor = 0;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      if (image.at(x, y)[3] == 0) continue;
+      const Vec3f position = xyz(image, x, y, "position"), normal = xyz(image, x, y, "normal");
+      EXPECT_NEAR(image.at(x, y)[image.find_channel("depth.Z")], length(position - eye), 1e-3F);
+      EXPECT_NEAR(length(normal), 1, 1e-4F);
+      if (normal.y < 0.999F || std::abs(position.y) > 1e-5F) continue;
+      ++floor;
+      expect_close(rgb(image, x, y, "albedo"), {0.7F, 0.7F, 0.7F}, 1e-5F);
+    }
+  }
+  EXPECT_GT(floor, 10);
+}
+
+TEST(Render, IlluminationLayerIsTheFrameWithoutTheAlbedo) {
+  // On Lambert surfaces beauty = albedo × illumination; direct only, so that both are free of noise.
+  Scene scene;
+  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert({0.5F, 0.25F, 0.8F}), "plane");
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(8, 8, {.samples = 16, .bounces = 0});
+  options.layers = {"illumination"};
+  const Image image = render(tracer, camera_above(2), {PointLight{"", {0, 1, 0}, {7, 8, 9}}}, options).image;
+  for (int x = 0; x < 8; ++x) {
+    expect_close(rgb(image, x, 3), Vec3f{0.5F, 0.25F, 0.8F} * rgb(image, x, 3, "illumination"), 1e-5F);
+  }
+}
+
+TEST(Render, SameBytesForAnyNumberOfThreads) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(32, 24, {.samples = 8, .seed = 9});
+  options.layers = frame_layers();
+  std::vector<std::vector<float>> pixels;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    pixels.push_back(render(tracer, default_camera(scene), two_lights(), options).image.pixels);
+  }
+  ASSERT_EQ(pixels[0].size(), pixels[1].size());
+  EXPECT_EQ(std::memcmp(pixels[0].data(), pixels[1].data(), pixels[0].size() * sizeof(float)), 0);
+}
+
+TEST(Render, StatedErrorIsThatOfRepeatedFrames) {
+  // The spread of frames of other seeds around their mean, against the error that each states.
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  const Camera camera = default_camera(scene);
+  constexpr int kFrames = 12;
+  std::vector<Image> frames;
+  double stated = 0;
+  for (std::uint64_t seed = 0; seed < kFrames; ++seed) {
+    const Frame frame = render(tracer, camera, two_lights(), sized(16, 12, {.samples = 16, .seed = seed}));
+    stated += frame.relative_standard_error * frame.relative_standard_error / kFrames;
+    frames.push_back(frame.image);
+  }
+  double spread = 0, value = 0;
+  for (std::size_t i = 0; i < frames[0].pixels.size(); ++i) {
+    if (i % 4 == 3) continue;  // alpha
+    double mean = 0, squares = 0;
+    for (const Image& frame : frames) mean += double(frame.pixels[i]) / kFrames;
+    for (const Image& frame : frames) squares += std::pow(double(frame.pixels[i]) - mean, 2) / (kFrames - 1);
+    spread += squares;
+    value += mean * mean;
+  }
+  // Stratification makes the true error smaller than the stated one, never much larger.
+  const double ratio = std::sqrt(spread / value / stated);
+  EXPECT_LT(ratio, 1.15);
+  EXPECT_GT(ratio, 0.3);
+}
+
+TEST(Render, UnknownLayersAreRefused) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(4, 4, {.samples = 1});
+  options.layers = {"direct", "shadow"};
+  EXPECT_THROW(render(tracer, default_camera(scene), {}, options), Error);
+}
+
+TEST(Render, StopsWhenAskedTo) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const std::atomic<bool> interrupted{true};
+  Control control;
+  control.interrupted = &interrupted;
+  EXPECT_THROW(render(tracer, default_camera(scene), {}, sized(64, 64, {.samples = 64}), control), Interruption);
+}
+
+TEST(DefaultCamera, SeesEveryCornerOfTheScene) {
+  for (const Vec3f size : {Vec3f{4, 3, 4}, Vec3f{100, 1, 1}, Vec3f{0.001F, 0.02F, 0.001F}, Vec3f{1, 1, 50}}) {
+    Scene scene;
+    add_mesh(scene, test::room(size), lambert({1, 1, 1}), "room");
+    scene.instances[0].world_from_object = make_transform({7, -3, 2}, {0, 0, 0, 1}, {1, 1, 1});
+    const Camera camera = default_camera(scene);
+    const Mat4f camera_from_world = inverse_affine(camera.world_from_camera);
+    const float half_height = std::tan(0.5F * camera.vertical_fov);
+    for (const Vec3f p : scene.meshes[0].positions) {
+      const Vec3f seen = transform_point(camera_from_world, p + Vec3f{7, -3, 2});
+      EXPECT_LT(seen.z, 0);
+      EXPECT_LT(std::abs(seen.y / seen.z), half_height);
+      EXPECT_LT(std::abs(seen.x / seen.z), half_height * 16 / 9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
