@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <optional>
 
 namespace chiaro::inverse {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostCuts = 16;                // sizes of the light tree's cuts that are refined
-constexpr double kKnee = 1.25;               // further lights must lower the error by this factor to be believed
-constexpr double kNoiseMargin = 1.02;        // an error this close to the noise is explained
-constexpr std::size_t kDarkest = 16;         // receivers in front of which a light is tried …
-constexpr std::size_t kCloseInsertions = 4;  // … the best of which are refined
+constexpr int kMostCuts = 16;          // sizes of the light tree's cuts that are refined
+constexpr double kKnee = 1.25;         // further lights must lower the error by this factor to be believed
+constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
+constexpr std::size_t kDarkest = 16;   // receivers in front of which a light is tried …
 constexpr float kFarthestInFront = 0.05F, kNearestInFront = 0.0005F;  // … at these parts of the region's diagonal
 // Along the normal, and around it at 30 and at 60 degrees.
 constexpr Vec3f kDirectionsInFront[] = {
@@ -56,13 +56,9 @@ class Search {
     return out_of_time_;
   }
 
-  // Refines, drops lights that went out, and keeps the set if it is the best of its size. Indirect light is made exact
-  // before the descent and once more where it led.
-  bool consider(LightEstimates start) {
-    exact_.correct(response_, start);
-    LightEstimates reached = refine_joint(response_, observations_, start).lights;
-    exact_.correct(response_, reached);
-    JointRefinement refined = refine_joint(response_, observations_, reached);
+  // Refines, drops lights that went out, and keeps the set if it is the best of its size.
+  bool consider(const LightEstimates& start) {
+    JointRefinement refined = refine_joint(response_, observations_, start);
     ++refinements_;
     std::erase_if(refined.lights, [](const LightEstimate& l) { return !(l.intensity > 0).any(); });
     const std::size_t count = refined.lights.size();
@@ -118,19 +114,12 @@ class Search {
       const Insertion i = insertion_at({p.x, p.y, p.z}, response_.grid_column(j), weighted);
       if (i.gain > best.gain) best = i;
     }
-    LightEstimates places;
-    for (const Eigen::Vector3d& p : places_in_front_of_darkest(residual)) places.push_back({p, Eigen::Array3d::Ones()});
-    const std::vector<Column> columns = evaluate_columns(response_, places, VisibilitySource::kTraced);
-    std::vector<Insertion> close;
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      // By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
-      const Column direct = columns[j] - response_.interpolated_indirect(places[j].position);
-      close.push_back(insertion_at(places[j].position, direct, weighted));
-    }
-    std::stable_sort(close.begin(), close.end(),
-                     [](const Insertion& a, const Insertion& b) { return a.gain > b.gain; });
     LightEstimates chosen;
-    for (std::size_t j = 0; j < std::min(kCloseInsertions, close.size()); ++j) chosen.push_back(close[j].light);
+    const std::vector<std::size_t> darkest = darkest_receivers(residual);
+    const float diagonal = response_.grid().region.diagonal();
+    for (float t = kFarthestInFront; t > kNearestInFront; t /= 1.5F) {
+      if (const auto place = best_place_in_front(darkest, t * diagonal, weighted)) chosen.push_back(*place);
+    }
     chosen.push_back(best.light);
     return chosen;
   }
@@ -143,27 +132,45 @@ class Search {
     }
   }
 
-  std::vector<Eigen::Vector3d> places_in_front_of_darkest(const Column& residual) const {
+  std::vector<std::size_t> darkest_receivers(const Column& residual) const {
     std::vector<std::pair<double, std::size_t>> lack;
     for (Eigen::Index i = 0; i < residual.rows(); ++i) {
       const double painted = observations_.sqrt_weight[i] > 0 ? 1 : 0;
       lack.emplace_back(-painted * residual.row(i).sum(), std::size_t(i));
     }
-    std::partial_sort(lack.begin(), lack.begin() + std::min<std::ptrdiff_t>(kDarkest, std::ssize(lack)), lack.end());
-    std::vector<Eigen::Vector3d> places;
-    const Box3f& region = response_.grid().region;
-    for (std::size_t k = 0; k < std::min<std::size_t>(kDarkest, lack.size()); ++k) {
-      const renderer::SurfaceSample& at = response_.receivers()[lack[k].second];
+    const std::size_t count = std::min(kDarkest, lack.size());
+    std::partial_sort(lack.begin(), lack.begin() + std::ptrdiff_t(count), lack.end());
+    std::vector<std::size_t> darkest;
+    for (std::size_t k = 0; k < count; ++k) darkest.push_back(lack[k].second);
+    return darkest;
+  }
+
+  // By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
+  std::optional<LightEstimate> best_place_in_front(const std::vector<std::size_t>& receivers, float distance,
+                                                   const Column& weighted_residual) const {
+    LightEstimates places;
+    for (const std::size_t i : receivers) {
+      const renderer::SurfaceSample& at = response_.receivers()[i];
       const renderer::Frame3f frame(at.normal);
       for (const Vec3f& direction : kDirectionsInFront) {
-        const Vec3f d = frame.world_from_local(direction);
-        for (float t = kFarthestInFront; t > kNearestInFront; t /= 1.5F) {
-          const Vec3f p = at.position + t * region.diagonal() * d;
-          if (region.contains(p)) places.emplace_back(p.x, p.y, p.z);
-        }
+        const Vec3f p = at.position + distance * frame.world_from_local(direction);
+        if (!response_.grid().region.contains(p)) continue;
+        places.push_back({Eigen::Vector3d(p.x, p.y, p.z), Eigen::Array3d::Ones()});
+        places.back().direct_only = true;
+        places.back().correction = -response_.interpolated_indirect(places.back().position);
       }
     }
-    return places;
+    const std::vector<Column> columns = evaluate_columns(response_, places, VisibilitySource::kTraced);
+    std::optional<LightEstimate> best;
+    double best_gain = 0;
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      const Insertion i = insertion_at(places[j].position, columns[j], weighted_residual);
+      if (i.gain <= best_gain) continue;
+      best_gain = i.gain;
+      best = places[j];
+      best->intensity = i.light.intensity;
+    }
+    return best;
   }
 
   void insert_lights() {

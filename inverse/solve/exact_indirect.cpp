@@ -32,7 +32,9 @@ void ExactIndirect::correct(const LightResponse& response, LightEstimates& light
       LightEstimate& light = lights[first + l];
       light.correction = -response.interpolated_indirect(light.position);
       for (std::size_t i = 0; i < exact.size(); ++i) {
-        for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(exact[i].channel[c][l]);
+        for (int c = 0; c < 3 && !light.direct_only; ++c) {
+          light.correction(Eigen::Index(i), c) += double(exact[i].channel[c][l]);
+        }
       }
     }
   }

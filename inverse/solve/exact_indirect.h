@@ -12,7 +12,8 @@ class ExactIndirect {
   ExactIndirect(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
                 const BakeSettings& settings);
 
-  // Gives each light the correction that makes its response exact where it stands now.
+  // Gives each light the correction that makes its response exact where it stands now, or, for a light that is
+  // direct_only, takes its indirect light off.
   void correct(const LightResponse& response, LightEstimates& lights) const;
 
  private:

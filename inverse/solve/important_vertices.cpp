@@ -3,6 +3,7 @@
 #include "inverse/solve/important_vertices.h"
 
 #include <algorithm>
+#include <set>
 
 #include "inverse/numerics/cotangent_laplacian.h"
 #include "inverse/numerics/weighted_sampling.h"
@@ -13,6 +14,7 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr int kGeometryRays = 32;
+constexpr int kNeighbourRings = 3;
 constexpr double kLeastDensity = 0.02;     // so that no painted receiver is out of reach
 constexpr double kLargestQuantile = 0.99;  // counts as 1: a few slivers must not make all else look flat
 
@@ -67,7 +69,7 @@ void normalize(std::vector<double>& values) {
 }
 
 // Receivers that hold more than 1 / count of the target's squared norm each: those right beside a light, which decide
-// what (3.6) says and which a draw would miss. At most a quarter of the count; the brightest first.
+// what (3.6) says and which a draw would miss. At most an eighth of the count; the brightest first.
 std::vector<std::size_t> brightest_receivers(const Target& target, std::size_t count) {
   double total = 0;
   std::vector<std::pair<double, std::size_t>> energy;
@@ -78,10 +80,27 @@ std::vector<std::size_t> brightest_receivers(const Target& target, std::size_t c
   }
   std::sort(energy.begin(), energy.end());
   std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k < count / 4 && -energy[k].first * double(count) > total; ++k) {
+  for (std::size_t k = 0; k < count / 8 && -energy[k].first * double(count) > total; ++k) {
     chosen.push_back(energy[k].second);
   }
   return chosen;
+}
+
+// Adds the neighbours along the mesh, which tell from where a bright receiver is lit, as long as there are fewer than
+// `most`.
+std::vector<std::size_t> with_neighbours(const Receivers& receivers, const std::vector<std::size_t>& some,
+                                         std::size_t most) {
+  std::set<std::size_t> grown(some.begin(), some.end());
+  for (int ring = 0; ring < kNeighbourRings; ++ring) {
+    const std::set<std::size_t> inner = grown;
+    for (const renderer::Triangle& t : receivers.triangles) {
+      if (!inner.contains(t[0]) && !inner.contains(t[1]) && !inner.contains(t[2])) continue;
+      for (const std::uint32_t v : t) {
+        if (grown.size() < most) grown.insert(v);
+      }
+    }
+  }
+  return {grown.begin(), grown.end()};
 }
 
 }  // namespace
@@ -103,7 +122,8 @@ Importance choose_important_vertices(const renderer::RayTracer& tracer, const Ta
     painted += target.weight[i] > 0 ? 1 : 0;
   }
   const std::size_t count = std::min(std::size_t(options.count), painted);
-  importance.chosen = brightest_receivers(target, count);
+  importance.chosen = with_neighbours(target.receivers, brightest_receivers(target, count), count / 4);
+  std::erase_if(importance.chosen, [&](std::size_t i) { return !(target.weight[i] > 0); });
   for (const std::size_t i : importance.chosen) density[i] = 0;
   const auto drawn = numerics::sample_without_replacement(density, count - importance.chosen.size(), options.seed);
   importance.chosen.insert(importance.chosen.end(), drawn.begin(), drawn.end());

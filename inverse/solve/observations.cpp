@@ -9,29 +9,27 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kModelError = 0.02;  // of a receiver's brightness: what interpolation and transport noise leave
+constexpr double kOrdinary = 0.97;  // of the receivers are as bright as lights at a distance make them
 
 }  // namespace
 
-Observations weighted_by_confidence(const Observations& observations, const Column& target,
-                                    const Eigen::VectorXd& standard_error) {
+Observations with_capped_weights(const Observations& observations, const Column& target,
+                                 const Eigen::VectorXd& standard_error) {
   const Eigen::VectorXd brightness = target.rowwise().norm();
   std::vector<double> sorted(brightness.data(), brightness.data() + brightness.size());
-  std::sort(sorted.begin(), sorted.end());
-  // The mean without the brightest twentieth.
-  const auto kept = std::ptrdiff_t(sorted.size() - sorted.size() / 20);
-  const double mean = std::accumulate(sorted.begin(), sorted.begin() + kept, 0.0) / double(kept);
-  Observations weighted = observations;
+  const auto nth = sorted.begin() + std::ptrdiff_t(kOrdinary * double(sorted.size() - 1));
+  std::nth_element(sorted.begin(), nth, sorted.end());
+  const double cap = *nth;
+  Observations capped = observations;
   double noise = 0;
   for (Eigen::Index i = 0; i < brightness.size(); ++i) {
-    const double model = kModelError * std::max(brightness[i], mean);
-    const double noise_squared = standard_error.size() > 0 ? 3 * standard_error[i] * standard_error[i] : 0;
-    weighted.sqrt_weight[i] *= kModelError * mean / std::sqrt(model * model + noise_squared);
-    noise += weighted.sqrt_weight[i] * weighted.sqrt_weight[i] * noise_squared;
+    if (brightness[i] > cap) capped.sqrt_weight[i] *= cap / brightness[i];
+    const double error = standard_error.size() > 0 ? capped.sqrt_weight[i] * standard_error[i] : 0;
+    noise += 3 * error * error;
   }
-  weighted.target_norm = (weighted.sqrt_weight.asDiagonal() * target).norm();
-  weighted.noise = std::sqrt(noise) / weighted.target_norm;
-  return weighted;
+  capped.target_norm = (capped.sqrt_weight.asDiagonal() * target).norm();
+  capped.noise = std::sqrt(noise) / capped.target_norm;
+  return capped;
 }
 
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity) {

@@ -15,18 +15,18 @@ struct Observations {
   double noise = 0;        // relative error that the target's own noise gives; 0: not known
 };
 
-// The same with every receiver weighted by how well its value can be known: by the target's standard error there
-// (empty: none) and a model error in proportion to its brightness, or to the mean where it is darker. So a few
-// receivers right beside a light do not hide all other light, and noisy ones do not call for lights of their own.
-// target: Ψ, with the fixed part, cd/m².
-Observations weighted_by_confidence(const Observations& observations, const Column& target,
-                                    const Eigen::VectorXd& standard_error);
+// The same with the few receivers right beside a light, which would hide all other light, weighted down in proportion
+// to their brightness, and with the noise that the target's standard errors (empty: none) give. target: Ψ, with the
+// fixed part, cd/m².
+Observations with_capped_weights(const Observations& observations, const Column& target,
+                                 const Eigen::VectorXd& standard_error);
 
 // A light being sought.
 struct LightEstimate {
   Eigen::Vector3d position;  // metres
   Eigen::Array3d intensity;  // candela per channel, ≥ 0
   Column correction{};       // added to its unity response wherever it moves; empty: none
+  bool direct_only = false;  // its indirect light is left out: what a fixture swallows
 };
 using LightEstimates = std::vector<LightEstimate>;
 

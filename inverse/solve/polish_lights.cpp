@@ -1,5 +1,7 @@
 #include "inverse/solve/polish_lights.h"
 
+#include <algorithm>
+
 namespace chiaro::inverse {
 namespace {
 
@@ -12,10 +14,8 @@ double largest_move(const LightEstimates& a, const LightEstimates& b) {
   return move;
 }
 
-}  // namespace
-
-PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
-                             const Observations& observations, const LightEstimates& start) {
+PolishedLights polish(const ExactIndirect& exact, const LightResponse& response, const Observations& observations,
+                      const LightEstimates& start) {
   PolishedLights result{start, 0, 0};
   const double rest = kAtRest * double(response.grid().region.diagonal());
   for (double move = rest + 1; move > rest && result.rounds < kMostRounds; ++result.rounds) {
@@ -26,6 +26,20 @@ PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& re
     result.error = refined.error;
   }
   return result;
+}
+
+}  // namespace
+
+PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
+                             const Observations& observations, const LightEstimates& start) {
+  PolishedLights result = polish(exact, response, observations, start);
+  const auto direct_only = [](const LightEstimate& light) { return light.direct_only; };
+  if (std::none_of(start.begin(), start.end(), direct_only)) return result;
+  // A light beside an open surface has indirect light after all: whichever explains the target better.
+  LightEstimates open = start;
+  for (LightEstimate& light : open) light.direct_only = false;
+  PolishedLights other = polish(exact, response, observations, open);
+  return other.error < result.error ? other : result;
 }
 
 }  // namespace chiaro::inverse

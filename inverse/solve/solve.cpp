@@ -84,7 +84,7 @@ Observations observe(const Target& target, const std::vector<std::size_t>& chose
     const auto errors = select(target.standard_error, chosen);
     standard_error = Eigen::Map<const Eigen::VectorXf>(errors.data(), wanted.rows()).cast<double>();
   }
-  return weighted_by_confidence(o, wanted, standard_error);
+  return with_capped_weights(o, wanted, standard_error);
 }
 
 // sqrt(Σ w se²) / sqrt(Σ w Ψ²) over all receivers; 0 where the target does not say.

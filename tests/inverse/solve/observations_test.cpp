@@ -44,8 +44,7 @@ TEST(FitIntensities, IsTheConstrainedMinimumOfANoisyTarget) {
   const IntensityFit fit = fit_intensities(observations, columns);
   LightEstimates lights = start;
   for (std::size_t j = 0; j < 5; ++j) lights[j].intensity = fit.intensity[j];
-  const Column residual =
-      observations.wanted - total_illumination(columns, lights, observations.wanted.rows());
+  const Column residual = observations.wanted - total_illumination(columns, lights, observations.wanted.rows());
   // Karush–Kuhn–Tucker, from the definition: the slope is 0 where a light shines, and not upwards where it does not.
   int dark = 0;
   for (std::size_t j = 0; j < 5; ++j) {

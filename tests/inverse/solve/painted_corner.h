@@ -42,7 +42,7 @@ inline LightEstimates known_lights(std::size_t count) {
 // corner_with_ball, its receivers, and what lights of one's choice show on them.
 class PaintedCorner {
  public:
-  explicit PaintedCorner(float max_edge = 0.15F) : receivers_(make_receivers(scene_, {.max_edge = max_edge})) {}
+  explicit PaintedCorner(float max_edge = 0.2F) : receivers_(make_receivers(scene_, {.max_edge = max_edge})) {}
 
   Target target(const LightEstimates& lights, int bounces) const {
     const auto lit = trace_illumination(tracer_, receivers_.samples, point_lights(lights),
@@ -66,7 +66,7 @@ class PaintedCorner {
 // Some receivers of the corner, direct light only, and what is wanted there.
 class DirectProblem {
  public:
-  explicit DirectProblem(const LightEstimates& lights, std::size_t count = 400) {
+  explicit DirectProblem(const LightEstimates& lights, std::size_t count = 250) {
     const Receivers& all = corner_.receivers();
     Receivers some;
     for (std::size_t k = 0; k < count; ++k) {
@@ -80,7 +80,7 @@ class DirectProblem {
                   bake_settings(0))
                  .cache;
     response_.emplace(corner_.tracer(), samples_, cache_);
-    exact_.emplace(corner_.tracer(), samples_, cache_.settings);
+    exact_.emplace(corner_.tracer(), samples_, 0, 1);
     observations_.wanted = total_illumination(evaluate_columns(*response_, lights, VisibilitySource::kTraced), lights,
                                               Eigen::Index(count));
     observations_.sqrt_weight = Eigen::VectorXd::Ones(Eigen::Index(count));

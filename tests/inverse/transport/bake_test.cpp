@@ -59,8 +59,8 @@ TEST(GatherOperator, IndirectLightInALambertSphereIsTheGeometricSeriesEverywhere
   for (const double depth : depths) lights.push_back((float(1 - depth) * kRadius) * outward);
   const double direct = 1 / (M_PI * kRadius * kRadius);
   for (const int bounces : {1, 2, -1}) {
-    const GatherOperator gather =
-        make_gather_operator(tracer, receivers, {.samples = 128, .points_per_sample = 16, .bounces = bounces, .seed = 3});
+    const GatherOperator gather = make_gather_operator(
+        tracer, receivers, {.samples = 128, .points_per_sample = 16, .bounces = bounces, .seed = 3});
     const auto indirect = indirect_illumination(tracer, gather, lights);
     ASSERT_EQ(indirect.size(), receivers.size());
     for (int channel = 0; channel < 2; ++channel) {
@@ -125,7 +125,8 @@ class BakedCorner : public ::testing::Test {
         grid_(make_light_grid(tracer_, {.counts = {4, 3, 4}, .region = {}})) {}
 
   // Illumination by grid lights of these intensities, as baked.
-  std::vector<Vec3f> baked(const TransportCache& cache, const std::vector<std::pair<std::size_t, Vec3f>>& lights) const {
+  std::vector<Vec3f> baked(const TransportCache& cache,
+                           const std::vector<std::pair<std::size_t, Vec3f>>& lights) const {
     const LightResponse response(tracer_, receivers_.samples, cache);
     std::vector<Vec3f> sum(receivers_.size());
     for (const auto& [light, intensity] : lights) {
@@ -156,7 +157,8 @@ class BakedCorner : public ::testing::Test {
 TEST_F(BakedCorner, DirectColumnsAreThePathTracers) {
   const TransportCache cache = bake(tracer_, receivers_, grid_, settings(16, 0)).cache;
   const auto sum = baked(cache, lights_);
-  const auto traced = trace_illumination(tracer_, receivers_.samples, point_lights(lights_), {.samples = 1, .bounces = 0});
+  const auto traced =
+      trace_illumination(tracer_, receivers_.samples, point_lights(lights_), {.samples = 1, .bounces = 0});
   std::size_t different = 0;
   for (std::size_t i = 0; i < sum.size(); ++i) {
     if (length(sum[i] - traced.value[i]) > 1e-4F * length(traced.value[i])) ++different;
@@ -169,8 +171,10 @@ TEST_F(BakedCorner, DirectColumnsAreThePathTracers) {
 TEST_F(BakedCorner, SuperpositionOfColumnsIsThePathTracersLight) {
   const BakeResult result = bake(tracer_, receivers_, grid_, settings(256, -1));
   const auto sum = baked(result.cache, lights_);
-  const auto traced = trace_illumination(tracer_, receivers_.samples, point_lights(lights_), {.samples = 512, .seed = 8});
-  const auto direct = trace_illumination(tracer_, receivers_.samples, point_lights(lights_), {.samples = 1, .bounces = 0});
+  const auto traced =
+      trace_illumination(tracer_, receivers_.samples, point_lights(lights_), {.samples = 512, .seed = 8});
+  const auto direct =
+      trace_illumination(tracer_, receivers_.samples, point_lights(lights_), {.samples = 1, .bounces = 0});
   double difference = 0, noise = 0, indirect = 0, all = 0;
   Vec3f mean_baked, mean_traced;
   for (std::size_t i = 0; i < sum.size(); ++i) {

@@ -89,7 +89,8 @@ TEST(LightGrid, HasAboutAThousandLightsByDefaultInsideTheScene) {
 TEST(LightGrid, FlatRegionsHaveOneLayer) {
   const Scene scene = room_with_ball();
   const RayTracer tracer(scene);
-  const LightGrid grid = make_light_grid(tracer, {.counts = {}, .region = Box3f{{0.5F, 2.5F, 0.5F}, {3.5F, 2.5F, 3.5F}}});
+  const LightGrid grid =
+      make_light_grid(tracer, {.counts = {}, .region = Box3f{{0.5F, 2.5F, 0.5F}, {3.5F, 2.5F, 3.5F}}});
   expect_consistent(grid);
   EXPECT_EQ(grid.counts[1], 1);
   EXPECT_GT(grid.counts[0], 10);
@@ -130,8 +131,8 @@ TEST(ParseRegion, TakesSixNumbersOrANodesName) {
 
 TEST(ParseRegion, RefusesTheRestByItsText) {
   const Scene scene = room_with_ball();
-  for (const char* text : {"", "bal", "1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,six", "1,2,3,4,5,6 ", "nan,0,0,1,1,1",
-                           "0,0,0,inf,1,1", "1;2;3;4;5;6"}) {
+  for (const char* text : {"", "bal", "1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,six", "1,2,3,4,5,6 ",
+                           "nan,0,0,1,1,1", "0,0,0,inf,1,1", "1;2;3;4;5;6"}) {
     try {
       parse_region(scene, text);
       ADD_FAILURE() << text;

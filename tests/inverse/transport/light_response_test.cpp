@@ -79,7 +79,8 @@ TEST_F(ResponseOfARoom, AtANodeItIsTheBakedColumn) {
     const Vec3f p = grid_.positions[light];
     const Column baked = response_.grid_column(light);
     EXPECT_LT((response_.evaluate({p.x, p.y, p.z}, VisibilitySource::kTraced) - baked).norm(), 1e-5 * baked.norm());
-    EXPECT_LT((response_.evaluate({p.x, p.y, p.z}, VisibilitySource::kInterpolated) - baked).norm(), 1e-5 * baked.norm());
+    EXPECT_LT((response_.evaluate({p.x, p.y, p.z}, VisibilitySource::kInterpolated) - baked).norm(),
+              1e-5 * baked.norm());
   }
 }
 

@@ -29,7 +29,8 @@ TransportCache make_cache(float largest) {
     const bool left_out = node == 4 || node == 5;
     grid.light_of_node.push_back(left_out ? -1 : int(grid.positions.size()));
     if (!left_out) {
-      grid.positions.push_back(grid.origin + grid.spacing * Vec3f{float(node % 3), float(node / 3 % 2), float(node / 6)});
+      grid.positions.push_back(grid.origin +
+                               grid.spacing * Vec3f{float(node % 3), float(node / 3 % 2), float(node / 6)});
     }
   }
   cache.receiver_count = 37;
@@ -185,7 +186,8 @@ TEST_F(TransportCacheFile, HeadersThatDoNotFitAreRefused) {
 }
 
 TEST_F(TransportCacheFile, MissingAttributesAreRefusedByName) {
-  for (const char* name : {"kind", "format_version", "region_min", "grid_nodes", "scene_fingerprint", "indirect_scale"}) {
+  for (const char* name :
+       {"kind", "format_version", "region_min", "grid_nodes", "scene_fingerprint", "indirect_scale"}) {
     save_edited([&](renderer::ImageFile& file) {
       std::erase_if(file.attributes, [&](const auto& a) { return a.first == std::string("chiaro:") + name; });
     });

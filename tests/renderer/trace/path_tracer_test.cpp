@@ -102,9 +102,11 @@ TEST(PathTracer, LightsOnAWallOrOnAReceiverGiveFiniteLight) {
 
 TEST(PathTracer, LightIsTakenApartByItsSource) {
   Scene scene = test::corner_with_ball();
-  test::add_mesh(scene, test::rectangle({1, 2.5F, 1}, {1, 0, 0}, {0, 0, 1}), test::lambert({0, 0, 0}, {5, 5, 5}), "lamp");
+  test::add_mesh(scene, test::rectangle({1, 2.5F, 1}, {1, 0, 0}, {0, 0, 1}), test::lambert({0, 0, 0}, {5, 5, 5}),
+                 "lamp");
   const RayTracer tracer(scene);
-  const Lights lights{PointLight{"", {3, 2, 3}, {10, 8, 6}}, SpotLight{"", {1, 2, 3}, {0, -1, 0}, {9, 9, 9}, 0.3F, 0.7F}};
+  const Lights lights{PointLight{"", {3, 2, 3}, {10, 8, 6}},
+                      SpotLight{"", {1, 2, 3}, {0, -1, 0}, {9, 9, 9}, 0.3F, 0.7F}};
   const PathTracer paths(tracer, lights, -1, true);
   PathLight light;
   light.per_light.assign(3, Vec3f{});

@@ -231,7 +231,8 @@ TEST(OffsetPoint, NoFalseShadowsInTheCornersOfARoom) {
     Sampler s(5, 0, k);
     const Vec2f place = s.next_2d(), across = s.next_2d();
     const Vec3f light{0.1F + 3.8F * place.x, 0.1F + 2.8F * place.y, 0.1F + 3.8F * s.next_1d()};
-    for (const Vec3f p : {Vec3f{0, 1e-4F, 5e-5F}, Vec3f{0, 1e-4F, 4 * across.x}, Vec3f{0, 3 * across.x, 4 * across.y}}) {
+    for (const Vec3f p :
+         {Vec3f{0, 1e-4F, 5e-5F}, Vec3f{0, 1e-4F, 4 * across.x}, Vec3f{0, 3 * across.x, 4 * across.y}}) {
       const Vec3f origin = offset_point(p, {1, 0, 0});
       EXPECT_FALSE(tracer.occluded_between(light, origin, 0)) << p.y << ", " << p.z;
       EXPECT_FALSE(tracer.occluded_between(origin, light, 0)) << p.y << ", " << p.z;

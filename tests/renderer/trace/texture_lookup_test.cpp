@@ -65,7 +65,7 @@ TEST(TextureLookup, ColourIsDecodedBeforeFilteringAndAlphaNever) {
   texture.wrap_u = Wrap::kClampToEdge;
   const Vec4f middle = look_up(texture, {0.5F, 0.5F}, true);
   EXPECT_NEAR(middle.x, 0.5F, 1e-6F);
-  EXPECT_NEAR(middle.y, 0.502887F, 1e-5F);           // the power law
+  EXPECT_NEAR(middle.y, 0.502887F, 1e-5F);             // the power law
   EXPECT_NEAR(middle.z, 10 / 255.0F / 12.92F, 1e-6F);  // the straight part
   EXPECT_NEAR(middle.w, 0.2F, 1e-6F);
 }

@@ -1,0 +1,299 @@
+// Whole solves of targets with known lights.
+
+#include "inverse/solve/solve.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/error.h"
+#include "tests/inverse/solve/painted_corner.h"
+#include "tests/inverse/target/temporary_folder.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Eigen::Vector3d;
+using renderer::Error;
+using tests::bake_settings;
+using tests::farthest_from;
+using tests::known_lights;
+using tests::PaintedCorner;
+
+SolveProblem problem_of(const PaintedCorner& corner, const Target& target, int bounces) {
+  SolveProblem problem{corner.tracer(), target, {}, {}, bake_settings(bounces), {}};
+  problem.grid.counts = {7, 6, 7};
+  return problem;
+}
+
+SolveOptions quick(SolveMethod method = SolveMethod::kJoint) {
+  SolveOptions options;
+  options.method = method;
+  options.important_vertices = 300;
+  options.verification_samples = 64;
+  return options;
+}
+
+std::vector<Vector3d> positions_of(const SolveResult& result) {
+  std::vector<Vector3d> positions;
+  for (const FoundLight& found : result.lights) {
+    const Vec3f p = found.light.position;
+    positions.emplace_back(p.x, p.y, p.z);
+  }
+  return positions;
+}
+
+// The text of the Error that a solve throws; empty where it throws none.
+std::string error_of(const SolveProblem& problem, const SolveOptions& options) {
+  try {
+    solve(problem, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+void expect_said(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "\"" << text << "\" instead of \"" << part << "\"";
+}
+
+TEST(Solve, FindsTwoLightsByDirectLight) {
+  const PaintedCorner corner;
+  const LightEstimates known = known_lights(2);
+  const Target target = corner.target(known, 0);
+  const SolveResult result = solve(problem_of(corner, target, 0), quick());
+  ASSERT_EQ(result.lights.size(), 2U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * corner.diagonal());
+  EXPECT_LT(result.relative_l2, 0.01);
+}
+
+// What is left of the error when the noise of the target and of the evaluation is taken off.
+double error_beyond_noise(const SolveResult& result) {
+  const double noise =
+      result.verification_noise * result.verification_noise + result.target_noise * result.target_noise;
+  return std::sqrt(std::max(0.0, result.relative_l2 * result.relative_l2 - noise));
+}
+
+TEST(Solve, FindsLightsThroughAllBouncesWithBothMethods) {
+  const PaintedCorner corner(0.3F);
+  const LightEstimates known = known_lights(2);
+  const Target target = corner.target(known, -1);
+  SolveProblem problem = problem_of(corner, target, -1);
+  problem.grid.counts = {5, 4, 5};
+  const SolveResult joint = solve(problem, quick());
+  ASSERT_EQ(joint.lights.size(), 2U) << "error " << joint.relative_l2;
+  EXPECT_LT(farthest_from(known, positions_of(joint)), 0.02 * corner.diagonal());
+  EXPECT_LT(error_beyond_noise(joint), 0.02);
+  EXPECT_GT(joint.target_noise, 0);
+  EXPECT_GT(joint.verification_noise, 0);
+
+  const SolveResult thesis = solve(problem, quick(SolveMethod::kThesis));
+  EXPECT_GE(thesis.lights.size(), 2U);
+  EXPECT_LE(thesis.relative_l2_cached, thesis.initial_relative_l2);
+  EXPECT_LT(thesis.relative_l2, 0.12);
+  // Both are evaluated with the same random numbers.
+  EXPECT_LE(joint.relative_l2, 1.05 * thesis.relative_l2);
+}
+
+TEST(Solve, SaysWhatItFound) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(3), 0);
+  const tests::TemporaryFolder folder;
+  SolveOptions options = quick();
+  options.report_folder = folder.path() / "report";
+  const SolveResult result = solve(problem_of(corner, target, 0), options);
+  ASSERT_EQ(result.lights.size(), 3U);
+  double contributions = 0;
+  for (std::size_t j = 0; j < 3; ++j) {
+    contributions += result.lights[j].contribution;
+    EXPECT_LE(result.lights[j].contribution, result.lights[j == 0 ? 0 : j - 1].contribution);
+    EXPECT_FALSE(result.lights[j].light.name.empty());
+  }
+  EXPECT_NEAR(contributions, 1, 1e-9);
+  EXPECT_EQ(result.important_vertices, 300);
+  EXPECT_EQ(result.illumination.size(), corner.receivers().size());
+  EXPECT_NEAR(result.relative_l2, relative_l2(result.illumination, target.illumination, target.weight), 1e-9);
+  EXPECT_FALSE(result.termination.empty());
+  EXPECT_FALSE(result.stages.empty());
+  double seconds = 0;
+  for (const StageReport& stage : result.stages) seconds += stage.seconds;
+  EXPECT_LE(seconds, result.total_seconds * 1.01 + 0.01);
+  EXPECT_GT(result.initial_seconds, 0);
+  EXPECT_GT(result.optimal_seconds, 0);
+  for (const char* name : {"importance.glb", "target.glb", "found.glb", "difference_x8.glb", "stages.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(options.report_folder / name)) << name;
+  }
+}
+
+TEST(Solve, SameLightsForAnyNumberOfThreads) {
+  const PaintedCorner corner(0.5F);
+  const Target target = corner.target(known_lights(1), 1);
+  SolveProblem problem = problem_of(corner, target, 1);
+  problem.grid.counts = {4, 3, 4};
+  SolveOptions options = quick();
+  options.important_vertices = 150;
+  options.max_lights = 2;
+  std::vector<std::vector<Vector3d>> positions;
+  for (const int threads : {1, 2}) {
+    const renderer::ThreadLimit limit(threads);
+    positions.push_back(positions_of(solve(problem, options)));
+  }
+  EXPECT_EQ(positions[0], positions[1]);
+}
+
+TEST(Solve, KeptLightsStayAndAreNotFoundAgain) {
+  const PaintedCorner corner;
+  const LightEstimates known = known_lights(2);
+  const Target target = corner.target(known, 0);
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.kept_lights = tests::point_lights({known[0]});
+  const SolveResult result = solve(problem, quick());
+  ASSERT_EQ(result.lights.size(), 1U);
+  EXPECT_LT(farthest_from({known[1]}, positions_of(result)), 0.01 * corner.diagonal());
+  EXPECT_LT(result.relative_l2, 0.01);  // of both together
+}
+
+TEST(Solve, GivesExactlyAsManyLightsAsAsked) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(2), 0);
+  for (const auto method : {SolveMethod::kJoint, SolveMethod::kThesis}) {
+    for (const int count : {1, 3}) {
+      SolveOptions options = quick(method);
+      options.exact_lights = count;
+      EXPECT_EQ(solve(problem_of(corner, target, 0), options).lights.size(), std::size_t(count)) << int(method);
+    }
+    SolveOptions options = quick(method);
+    options.max_lights = 1;
+    EXPECT_EQ(solve(problem_of(corner, target, 0), options).lights.size(), 1U) << int(method);
+  }
+}
+
+TEST(Solve, LightsStandInTheirRegion) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(2), 0);
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.grid.region = Box3f{{0.3F, 2.6F, 0.3F}, {3.7F, 2.8F, 3.7F}};  // under the ceiling, where no known light is
+  problem.grid.counts = {8, 2, 8};
+  for (const auto method : {SolveMethod::kJoint, SolveMethod::kThesis}) {
+    const SolveResult result = solve(problem, quick(method));
+    ASSERT_FALSE(result.lights.empty());
+    for (const Vector3d& p : positions_of(result)) {
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_GE(p[a], double(problem.grid.region->min[a]) - 1e-5) << int(method);
+        EXPECT_LE(p[a], double(problem.grid.region->max[a]) + 1e-5) << int(method);
+      }
+    }
+  }
+}
+
+TEST(Solve, UnweightedReceiversDoNotMatter) {
+  // Nonsense painted where nobody cares.
+  const PaintedCorner corner;
+  const LightEstimates known = known_lights(1);
+  Target target = corner.target(known, 0);
+  for (std::size_t i = 0; i < target.weight.size(); i += 4) {
+    target.weight[i] = 0;
+    target.illumination[i] = {100, 0, 50};
+  }
+  const SolveResult result = solve(problem_of(corner, target, 0), quick());
+  ASSERT_EQ(result.lights.size(), 1U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * corner.diagonal());
+  EXPECT_LT(result.relative_l2, 0.01);
+}
+
+TEST(Solve, ACacheFileGivesWhatABakeGives) {
+  const PaintedCorner corner;
+  const LightEstimates known = known_lights(1);
+  const Target target = corner.target(known, 0);
+  const tests::TemporaryFolder folder;
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.cache_file = folder.path() / "cache.exr";
+  const LightGrid grid = make_light_grid(corner.tracer(), problem.grid);
+  save_transport_cache(bake(corner.tracer(), corner.receivers(), grid, bake_settings(0)).cache, *problem.cache_file);
+  const SolveResult result = solve(problem, quick());
+  ASSERT_EQ(result.lights.size(), 1U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * corner.diagonal());
+}
+
+TEST(Solve, StaleCachesAreRefusedWithTheReason) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(1), 0);
+  const tests::TemporaryFolder folder;
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.cache_file = folder.path() / "cache.exr";
+  const LightGrid grid = make_light_grid(corner.tracer(), {.counts = {3, 3, 3}, .region = {}});
+  const TransportCache fresh = bake(corner.tracer(), corner.receivers(), grid, bake_settings(0)).cache;
+
+  TransportCache stale = fresh;
+  stale.settings.materials = "diffuse";
+  save_transport_cache(stale, *problem.cache_file);
+  expect_said(error_of(problem, quick()), "materials");
+
+  stale = fresh;
+  stale.scene_fingerprint = "0000000000000000";
+  save_transport_cache(stale, *problem.cache_file);
+  expect_said(error_of(problem, quick()), "another scene");
+
+  const PaintedCorner coarser(0.3F);
+  stale = bake(corner.tracer(), coarser.receivers(), grid, bake_settings(0)).cache;
+  save_transport_cache(stale, *problem.cache_file);
+  expect_said(error_of(problem, quick()), "other receivers");
+
+  stale = fresh;
+  stale.settings.bounces = 2;
+  save_transport_cache(stale, *problem.cache_file);
+  expect_said(error_of(problem, quick()), "bounces");
+
+  problem.cache_file = folder.path() / "missing.exr";
+  expect_said(error_of(problem, quick()), "missing.exr");
+}
+
+TEST(Solve, ATargetOfAnotherSceneIsRefused) {
+  const PaintedCorner corner;
+  Target target = corner.target(known_lights(1), 0);
+  for (Vec3f& p : target.receivers.positions) p.y += 0.2F;
+  for (renderer::SurfaceSample& s : target.receivers.samples) s.position.y += 0.2F;
+  for (Vec3f& p : target.receivers.positions) p.x += 0.15F, p.z += 0.1F;
+  for (renderer::SurfaceSample& s : target.receivers.samples) s.position.x += 0.15F, s.position.z += 0.1F;
+  expect_said(error_of(problem_of(corner, target, 0), quick()), "another scene");
+}
+
+TEST(Solve, TargetsThatNoLightCanProduceAreRefused) {
+  const PaintedCorner corner;
+  // Nothing but the undersides of the ball and floor below it is painted, from a region that they cannot see.
+  Target target = corner.target(known_lights(1), 0);
+  const Vec3f ball{2.2F, 0.6F, 1.8F};
+  for (std::size_t i = 0; i < target.weight.size(); ++i) {
+    const Vec3f p = target.receivers.positions[i];
+    const bool below = target.receivers.normals[i].y < -0.8F && length(p - ball) < 0.61F;
+    target.weight[i] = below ? 1 : 0;
+    target.illumination[i] = below ? Vec3f{1, 1, 1} : Vec3f{};
+  }
+  ASSERT_TRUE(std::any_of(target.weight.begin(), target.weight.end(), [](float w) { return w > 0; }));
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.grid.region = Box3f{{0.3F, 2.5F, 0.3F}, {3.7F, 2.9F, 3.7F}};
+  problem.grid.counts = {4, 2, 4};
+  expect_said(error_of(problem, quick()), "no light possible");
+
+  // A region inside the ball.
+  problem.grid.region = Box3f{ball - Vec3f{0.2F, 0.2F, 0.2F}, ball + Vec3f{0.2F, 0.2F, 0.2F}};
+  problem.grid.counts = {2, 2, 2};
+  expect_said(error_of(problem, quick()), "no light possible");
+
+  // Darker than the lights that are kept.
+  const Target lit = corner.target(known_lights(1), 0);
+  SolveProblem outshone = problem_of(corner, lit, 0);
+  outshone.kept_lights = tests::point_lights(known_lights(1));
+  std::get<renderer::PointLight>(outshone.kept_lights[0]).intensity *= 2;
+  expect_said(error_of(outshone, quick()), "no light possible");
+}
+
+TEST(Solve, StopsWhenAskedTo) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(1), 0);
+  const std::atomic<bool> interrupted{true};
+  renderer::Control control;
+  control.interrupted = &interrupted;
+  EXPECT_THROW(solve(problem_of(corner, target, -1), quick(), control), renderer::Interruption);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse
