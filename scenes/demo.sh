@@ -46,7 +46,7 @@ step "Trace what the found lights give, and compare it with what was wanted (the
 
 # The same seed for both frames, unlike above: most of their noise is then the same, and the difference shows the lights.
 step "Render both: the true lights (before.exr), the found ones (after.exr)"
-frame=(--width 640 --samples 128 --seed 15 --preview)
+frame=(--width 512 --samples 96 --seed 15 --preview)
 "$chiaro" render "$scene" --lights true.json -o before.exr "${frame[@]}"
 "$chiaro" render found.glb -o after.exr "${frame[@]}"
 

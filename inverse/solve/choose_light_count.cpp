@@ -16,6 +16,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kMostCuts = 16;          // sizes of the light tree's cuts that are refined
 constexpr double kKnee = 1.25;         // further lights must lower the error by this factor to be believed
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
+constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
 constexpr std::size_t kDarkest = 16;   // receivers in front of which a light is tried …
 constexpr float kFarthestInFront = 0.05F, kNearestInFront = 0.0005F;  // … at these parts of the region's diagonal
 // Along the normal, and around it at 30 and at 60 degrees.
@@ -80,7 +81,7 @@ class Search {
   std::size_t knee() const {
     double least = std::numeric_limits<double>::infinity();
     for (const Candidate& c : best_) least = std::min(least, c.error);
-    const double enough = std::max(kKnee * least, kNoiseMargin * observations_.noise);
+    const double enough = std::max({kKnee * least, kNoiseMargin * observations_.noise, kRounding});
     std::size_t size = 1;
     while (size + 1 < best_.size() && !(best_[size].error <= enough)) ++size;
     return size;

@@ -19,7 +19,7 @@ namespace {
 using renderer::Error;
 
 constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
-constexpr double kVerificationPaths = 8e6;        // spent on the fresh evaluation, if not asked otherwise
+constexpr double kVerificationPaths = 2e7;        // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
 constexpr int kFixedSamples = 512;
 constexpr double kOnSurface = 0.5;  // of a target's receivers must lie on the scene

@@ -80,7 +80,7 @@ class DirectProblem {
                   bake_settings(0))
                  .cache;
     response_.emplace(corner_.tracer(), samples_, cache_);
-    exact_.emplace(corner_.tracer(), samples_, 0, 1);
+    exact_.emplace(corner_.tracer(), samples_, cache_.settings);
     observations_.wanted = total_illumination(evaluate_columns(*response_, lights, VisibilitySource::kTraced), lights,
                                               Eigen::Index(count));
     observations_.sqrt_weight = Eigen::VectorXd::Ones(Eigen::Index(count));
