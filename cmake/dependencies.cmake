@@ -10,7 +10,7 @@ macro(require_package name debian_package)
 endmacro()
 
 require_package(embree libembree-dev 3)
-require_package(OpenImageIO libopenimageio-dev)
+require_package(OpenImageIO "libopenimageio-dev openimageio-tools")
 require_package(TinyGLTF libtinygltf-dev)
 require_package(Ceres libceres-dev)
 require_package(Eigen3 libeigen3-dev 3.4)
