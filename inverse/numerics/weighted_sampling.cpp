@@ -59,4 +59,27 @@ std::vector<std::size_t> sample_without_replacement(std::span<const double> weig
   return chosen;
 }
 
+std::vector<double> inclusion_probabilities(std::span<const double> weights, std::size_t count) {
+  const double largest = weights.empty() ? 0 : *std::max_element(weights.begin(), weights.end());
+  const auto positive = std::size_t(std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0; }));
+  std::vector<double> probability(weights.size());
+  if (positive <= count) {
+    std::transform(weights.begin(), weights.end(), probability.begin(), [](double w) { return w > 0 ? 1.0 : 0.0; });
+    return probability;
+  }
+  const auto fill = [&](double tau) {
+    double sum = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) sum += probability[i] = -std::expm1(-tau * (weights[i] / largest));
+    return sum;
+  };
+  double low = 0, high = 1;
+  while (fill(high) < double(count) && high < 1e300) high *= 2;
+  for (int i = 0; i < 200 && high - low > 1e-12 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fill(middle) < double(count) ? low : high) = middle;
+  }
+  fill(high);
+  return probability;
+}
+
 }  // namespace chiaro::inverse::numerics

@@ -13,4 +13,9 @@ namespace chiaro::inverse::numerics {
 std::vector<std::size_t> sample_without_replacement(std::span<const double> weights, std::size_t count,
                                                     std::uint64_t seed);
 
+// With which probability each index is among the `count` drawn: 1 − exp(−w τ), τ such that they add up to `count`. The
+// probabilities of the draw above in the limit of many indices. For the weighted estimate of a sum over all from a sum
+// over those drawn: Horvitz & Thompson, A generalization of sampling without replacement from a finite universe, 1952.
+std::vector<double> inclusion_probabilities(std::span<const double> weights, std::size_t count);
+
 }  // namespace chiaro::inverse::numerics

@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "inverse/solve/exact_indirect.h"
 #include "inverse/solve/light_clusters.h"
 #include "inverse/solve/refine_joint.h"
 
@@ -12,9 +11,8 @@ namespace chiaro::inverse {
 
 struct LightCountOptions {
   int max_lights = 32;
-  int exact_lights = 0;    // 0: chosen here
-  double noise_floor = 0;  // relative error that the target's noise alone gives
-  double time_limit = 0;   // seconds; 0: none
+  int exact_lights = 0;   // 0: chosen here
+  double time_limit = 0;  // seconds; 0: none
 };
 
 struct LightCountResult {
@@ -27,8 +25,7 @@ struct LightCountResult {
 
 // Every cut of the light tree is refined jointly; then lights are inserted where the residual asks for them, and taken
 // away one by one, as long as that gains anything (backward elimination).
-LightCountResult choose_light_count(const LightResponse& response, const ExactIndirect& exact,
-                                    const Observations& observations, const LightTree& tree,
-                                    const LightCountOptions& options);
+LightCountResult choose_light_count(const LightResponse& response, const Observations& observations,
+                                    const LightTree& tree, const LightCountOptions& options);
 
 }  // namespace chiaro::inverse

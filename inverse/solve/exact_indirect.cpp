@@ -1,10 +1,17 @@
 #include "inverse/solve/exact_indirect.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kSamplesFactor = 4;     // gather rays per receiver, over those of the bake
-constexpr int kPointsPerSample = 16;  // gather points over rays
+constexpr int kSamplesFactor = 4;                    // gather rays per receiver, over those of the bake
+constexpr int kPointsPerSample = 16;                 // gather points over rays
+constexpr std::size_t kPaths = 4000000;              // of all lights together …
+constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver
+
+Vec3f vec3f(const Eigen::Vector3d& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
 
 GatherOptions gather_options(const BakeSettings& settings) {
   return {.samples = kSamplesFactor * settings.samples,
@@ -17,27 +24,53 @@ GatherOptions gather_options(const BakeSettings& settings) {
 
 ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
                              const BakeSettings& settings)
-    : tracer_(tracer), gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
+    : tracer_(tracer),
+      settings_(settings),
+      gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
 
 void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
   for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
     const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
     std::vector<Vec3f> positions;
-    for (std::size_t l = 0; l < count; ++l) {
-      const Eigen::Vector3d& p = lights[first + l].position;
-      positions.push_back({float(p.x()), float(p.y()), float(p.z())});
-    }
+    for (std::size_t l = 0; l < count; ++l) positions.push_back(vec3f(lights[first + l].position));
     const std::vector<LightBlock> exact = indirect_illumination(tracer_, gather_, positions);
     for (std::size_t l = 0; l < count; ++l) {
       LightEstimate& light = lights[first + l];
       light.correction = -response.interpolated_indirect(light.position);
       for (std::size_t i = 0; i < exact.size(); ++i) {
-        for (int c = 0; c < 3 && !light.direct_only; ++c) {
-          light.correction(Eigen::Index(i), c) += double(exact[i].channel[c][l]);
-        }
+        for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(exact[i].channel[c][l]);
       }
     }
   }
+}
+
+void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimates& lights) const {
+  std::vector<std::size_t> all(response.receiver_count());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  for (LightEstimate& light : lights) {
+    const std::vector<Vec3f> indirect = traced(response, all, light.position, kPaths / lights.size());
+    light.correction = -response.interpolated_indirect(light.position);
+    for (std::size_t i = 0; i < indirect.size(); ++i) {
+      for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(indirect[i][c]);
+    }
+  }
+}
+
+std::vector<Vec3f> ExactIndirect::traced(const LightResponse& response, const std::vector<std::size_t>& receivers,
+                                         const Eigen::Vector3d& position, std::size_t paths) const {
+  renderer::PointLight unity;
+  unity.position = vec3f(position);
+  unity.intensity = {1, 1, 1};
+  std::vector<renderer::SurfaceSample> samples;
+  for (const std::size_t i : receivers) samples.push_back(response.receivers()[i]);
+  const int each = std::clamp(int(paths / samples.size()), kLeastPaths, kMostPaths);
+  std::vector<Vec3f> indirect =
+      trace_illumination(tracer_, samples, {unity}, {each, settings_.bounces, settings_.seed, false}).value;
+  const Column direct = response.direct(position);
+  for (std::size_t k = 0; k < receivers.size(); ++k) {
+    for (int c = 0; c < 3; ++c) indirect[k][c] -= float(direct(Eigen::Index(receivers[k]), c));
+  }
+  return indirect;
 }
 
 }  // namespace chiaro::inverse

@@ -12,12 +12,21 @@ class ExactIndirect {
   ExactIndirect(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
                 const BakeSettings& settings);
 
-  // Gives each light the correction that makes its response exact where it stands now, or, for a light that is
-  // direct_only, takes its indirect light off.
+  // Gives each light the correction that makes its response exact where it stands now.
   void correct(const LightResponse& response, LightEstimates& lights) const;
+  // The same by path tracing: slower and noisier, but right where gather points are too far apart, and for materials
+  // that are not Lambertian.
+  void correct_by_paths(const LightResponse& response, LightEstimates& lights) const;
+  // Indirect illumination of some of the receivers under a unity light, by this many paths.
+  std::vector<Vec3f> traced(const LightResponse& response, const std::vector<std::size_t>& receivers,
+                            const Eigen::Vector3d& position, std::size_t paths) const;
+
+  const renderer::RayTracer& tracer() const { return tracer_; }
+  const GatherOperator& gather() const { return gather_; }
 
  private:
   const renderer::RayTracer& tracer_;
+  BakeSettings settings_;
   GatherOperator gather_;
 };
 

@@ -125,9 +125,12 @@ Importance choose_important_vertices(const renderer::RayTracer& tracer, const Ta
   importance.chosen = with_neighbours(target.receivers, brightest_receivers(target, count), count / 4);
   std::erase_if(importance.chosen, [&](std::size_t i) { return !(target.weight[i] > 0); });
   for (const std::size_t i : importance.chosen) density[i] = 0;
-  const auto drawn = numerics::sample_without_replacement(density, count - importance.chosen.size(), options.seed);
+  const std::size_t left = count - importance.chosen.size();
+  const auto drawn = numerics::sample_without_replacement(density, left, options.seed);
+  const std::vector<double> probability = numerics::inclusion_probabilities(density, left);
   importance.chosen.insert(importance.chosen.end(), drawn.begin(), drawn.end());
   std::sort(importance.chosen.begin(), importance.chosen.end());
+  for (const std::size_t i : importance.chosen) importance.probability.push_back(density[i] > 0 ? probability[i] : 1);
   return importance;
 }
 

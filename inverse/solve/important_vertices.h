@@ -19,6 +19,7 @@ struct Importance {
   std::vector<double> illumination;  // eq. (3.4): |cotangent Laplacian of the HSV value of Ψ|
   std::vector<double> total;         // 0 where the target's weight is 0
   std::vector<std::size_t> chosen;   // the important vertices, ascending
+  std::vector<double> probability;   // with which each of them was to be chosen
 };
 
 // Drawn without replacement with `total` as the density, after the few that hold most of the target's energy; all

@@ -13,22 +13,21 @@ constexpr double kOrdinary = 0.97;  // of the receivers are as bright as lights 
 
 }  // namespace
 
-Observations with_capped_weights(const Observations& observations, const Column& target,
-                                 const Eigen::VectorXd& standard_error) {
-  const Eigen::VectorXd brightness = target.rowwise().norm();
+void Observations::measure_target() {
+  target_norm = (sqrt_weight.asDiagonal() * target).norm();
+  noise = target_norm > 0 ? std::sqrt(3.0) * sqrt_weight.cwiseProduct(standard_error).norm() / target_norm : 0;
+}
+
+Observations with_capped_weights(const Observations& observations) {
+  const Eigen::VectorXd brightness = observations.target.rowwise().norm();
   std::vector<double> sorted(brightness.data(), brightness.data() + brightness.size());
   const auto nth = sorted.begin() + std::ptrdiff_t(kOrdinary * double(sorted.size() - 1));
   std::nth_element(sorted.begin(), nth, sorted.end());
-  const double cap = *nth;
   Observations capped = observations;
-  double noise = 0;
   for (Eigen::Index i = 0; i < brightness.size(); ++i) {
-    if (brightness[i] > cap) capped.sqrt_weight[i] *= cap / brightness[i];
-    const double error = standard_error.size() > 0 ? capped.sqrt_weight[i] * standard_error[i] : 0;
-    noise += 3 * error * error;
+    if (brightness[i] > *nth) capped.sqrt_weight[i] *= *nth / brightness[i];
   }
-  capped.target_norm = (capped.sqrt_weight.asDiagonal() * target).norm();
-  capped.noise = std::sqrt(noise) / capped.target_norm;
+  capped.measure_target();
   return capped;
 }
 

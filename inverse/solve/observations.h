@@ -11,22 +11,24 @@ namespace chiaro::inverse {
 struct Observations {
   Column wanted;  // cd/m², the fixed part (emission, kept lights) taken off
   Eigen::VectorXd sqrt_weight;
-  double target_norm = 0;  // √Σ weight · Ψ², of the whole target at these vertices: the denominator of (3.6)
-  double noise = 0;        // relative error that the target's own noise gives; 0: not known
+  Column target;                   // Ψ, cd/m², with the fixed part
+  Eigen::VectorXd standard_error;  // of Ψ, cd/m²; 0 where it is not known
+  double target_norm = 0;          // √Σ weight · Ψ²: the denominator of (3.6)
+  double noise = 0;                // relative error that the standard errors give; 0: not known
+
+  // target_norm and noise, of the other members.
+  void measure_target();
 };
 
 // The same with the few receivers right beside a light, which would hide all other light, weighted down in proportion
-// to their brightness, and with the noise that the target's standard errors (empty: none) give. target: Ψ, with the
-// fixed part, cd/m².
-Observations with_capped_weights(const Observations& observations, const Column& target,
-                                 const Eigen::VectorXd& standard_error);
+// to their brightness.
+Observations with_capped_weights(const Observations& observations);
 
 // A light being sought.
 struct LightEstimate {
   Eigen::Vector3d position;  // metres
   Eigen::Array3d intensity;  // candela per channel, ≥ 0
   Column correction{};       // added to its unity response wherever it moves; empty: none
-  bool direct_only = false;  // its indirect light is left out: what a fixture swallows
 };
 using LightEstimates = std::vector<LightEstimate>;
 

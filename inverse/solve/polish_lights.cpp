@@ -1,12 +1,17 @@
 #include "inverse/solve/polish_lights.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "inverse/solve/settle_positions.h"
 
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kMostRounds = 4;
-constexpr double kAtRest = 2e-4;  // of the region's diagonal
+constexpr int kGatheredRounds = 4, kTracedRounds = 2;
+constexpr double kAtRest = 2e-4;     // of the region's diagonal
+constexpr double kSettle = 3e-3;     // first steps across shadow edges, of the region's diagonal
+constexpr double kExplained = 1.05;  // times the noise: an error that leaves nothing to mend
 
 double largest_move(const LightEstimates& a, const LightEstimates& b) {
   double move = 0;
@@ -14,32 +19,35 @@ double largest_move(const LightEstimates& a, const LightEstimates& b) {
   return move;
 }
 
-PolishedLights polish(const ExactIndirect& exact, const LightResponse& response, const Observations& observations,
-                      const LightEstimates& start) {
-  PolishedLights result{start, 0, 0};
-  const double rest = kAtRest * double(response.grid().region.diagonal());
-  for (double move = rest + 1; move > rest && result.rounds < kMostRounds; ++result.rounds) {
-    exact.correct(response, result.lights);
-    JointRefinement refined = refine_joint(response, observations, result.lights);
-    move = largest_move(refined.lights, result.lights);
-    result.lights = std::move(refined.lights);
-    result.error = refined.error;
+using Corrector = void (ExactIndirect::*)(const LightResponse&, LightEstimates&) const;
+
+void descend(const ExactIndirect& exact, Corrector correct, int most_rounds, const LightResponse& response,
+             const Observations& observations, PolishedLights& polished) {
+  const double diagonal = double(response.grid().region.diagonal());
+  double move = std::numeric_limits<double>::infinity();
+  for (int round = 0; move > kAtRest * diagonal && round < most_rounds; ++round) {
+    (exact.*correct)(response, polished.lights);
+    const JointRefinement refined = refine_joint(response, observations, polished.lights);
+    SettledLights settled = settle_positions(response, observations, refined.lights, kSettle * diagonal);
+    move = largest_move(settled.lights, polished.lights);
+    polished.lights = std::move(settled.lights);
+    polished.error = settled.error;
+    ++polished.rounds;
   }
-  return result;
 }
 
 }  // namespace
 
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start) {
-  PolishedLights result = polish(exact, response, observations, start);
-  const auto direct_only = [](const LightEstimate& light) { return light.direct_only; };
-  if (std::none_of(start.begin(), start.end(), direct_only)) return result;
-  // A light beside an open surface has indirect light after all: whichever explains the target better.
-  LightEstimates open = start;
-  for (LightEstimate& light : open) light.direct_only = false;
-  PolishedLights other = polish(exact, response, observations, open);
-  return other.error < result.error ? other : result;
+  PolishedLights gathered{start, 0, 0};
+  descend(exact, &ExactIndirect::correct, kGatheredRounds, response, observations, gathered);
+  if (gathered.error <= kExplained * observations.noise) return gathered;
+  PolishedLights traced = gathered;
+  descend(exact, &ExactIndirect::correct_by_paths, kTracedRounds, response, observations, traced);
+  if (traced.error < gathered.error) return traced;
+  gathered.rounds = traced.rounds;
+  return gathered;
 }
 
 }  // namespace chiaro::inverse

@@ -118,8 +118,7 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   ceres::Solve(solver_options(options), &problem, &summary);
   for (std::size_t j = 0; j < start.size(); ++j) {
     const Parameters& p = parameters[j];
-    result.lights.push_back(
-        {Eigen::Vector3d(p.data()), Eigen::Array3d(p[3], p[4], p[5]), start[j].correction, start[j].direct_only});
+    result.lights.push_back({Eigen::Vector3d(p.data()), Eigen::Array3d(p[3], p[4], p[5]), start[j].correction});
   }
   result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
   result.iterations = int(summary.iterations.size());

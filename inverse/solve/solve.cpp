@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <optional>
 
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/important_vertices.h"
+#include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/optimize_simplex.h"
 #include "inverse/solve/polish_lights.h"
 #include "inverse/solve/prepare_transport.h"
@@ -67,24 +69,27 @@ Column target_at(const Target& target, const std::vector<std::size_t>& chosen) {
   return column;
 }
 
-Observations observe(const Target& target, const std::vector<std::size_t>& chosen, const std::vector<Vec3f>& fixed,
-                     SolveMethod method) {
+// By (3.6) over the important vertices as published; or, with `unbiased`, by weights with which the important vertices
+// stand for all receivers.
+Observations observe(const Target& target, const Importance& importance, const std::vector<Vec3f>& fixed,
+                     bool unbiased) {
+  const std::vector<std::size_t>& chosen = importance.chosen;
   Observations o;
   const Column wanted = target_at(target, chosen);
   o.wanted = wanted;
   o.sqrt_weight.resize(wanted.rows());
   for (Eigen::Index i = 0; i < wanted.rows(); ++i) {
-    o.sqrt_weight[i] = std::sqrt(double(target.weight[chosen[std::size_t(i)]]));
+    const double probability = unbiased ? importance.probability[std::size_t(i)] : 1;
+    o.sqrt_weight[i] = std::sqrt(double(target.weight[chosen[std::size_t(i)]]) / probability);
     for (int c = 0; c < 3; ++c) o.wanted(i, c) -= double(fixed[std::size_t(i)][c]);
   }
-  o.target_norm = (o.sqrt_weight.asDiagonal() * wanted).norm();
-  if (method == SolveMethod::kThesis) return o;
-  Eigen::VectorXd standard_error;
-  if (!target.standard_error.empty()) {
-    const auto errors = select(target.standard_error, chosen);
-    standard_error = Eigen::Map<const Eigen::VectorXf>(errors.data(), wanted.rows()).cast<double>();
+  o.target = wanted;
+  o.standard_error = Eigen::VectorXd::Zero(wanted.rows());
+  for (std::size_t i = 0; i < chosen.size() && !target.standard_error.empty(); ++i) {
+    o.standard_error[Eigen::Index(i)] = double(target.standard_error[chosen[i]]);
   }
-  return with_capped_weights(o, wanted, standard_error);
+  o.measure_target();
+  return o;
 }
 
 // sqrt(Σ w se²) / sqrt(Σ w Ψ²) over all receivers; 0 where the target does not say.
@@ -138,6 +143,11 @@ Column illumination_of(const LightResponse& response, const LightEstimates& ligh
   return total_illumination(columns, lights, Eigen::Index(response.receiver_count()));
 }
 
+LightEstimates joined(LightEstimates some, const LightEstimates& others) {
+  some.insert(some.end(), others.begin(), others.end());
+  return some;
+}
+
 // Sections 3.4.2 and 3.4.3.
 Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
                               const SolveOptions& options, StageClock& clock) {
@@ -151,27 +161,35 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light"};
 }
 
-Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& response, const Observations& published,
-                         const Observations& observations, const LightTree& tree, const SolveOptions& options,
-                         StageClock& clock) {
-  clock.finish("exact_indirect", {});
-  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
-  const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
+Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& response, const Observations& remaining,
+                         const Observations& judged, const LightEstimates& beside_surfaces, const LightTree& tree,
+                         const SolveOptions& options, StageClock& clock) {
+  const int already = int(beside_surfaces.size());
+  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
+                               options.max_lights - already};
+  const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  const LightCountResult count = choose_light_count(response, exact, observations, tree,
-                                                    {options.max_lights, options.exact_lights, options.time_limit});
-  StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", observations.noise}};
+  const LightCountResult count = choose_light_count(
+      response, remaining, tree,
+      {options.max_lights - already, std::max(0, options.exact_lights - already), options.time_limit});
+  StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}};
   for (std::size_t n = 0; n < count.error_curve.size(); ++n) {
     figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
   }
   clock.finish("joint_refinement", figures);
-  // The last descent is by (3.6) itself, which the result is judged by.
-  const PolishedLights polished = polish_lights(exact, response, published, count.lights);
+  // The last descent is by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
+  // blind to all others.
+  const Observations& last = beside_surfaces.empty() ? judged : remaining;
+  const PolishedLights polished = polish_lights(exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  return {polished.lights, cut.lights,
+  return {joined(beside_surfaces, polished.lights), joined(beside_surfaces, cut.lights),
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more"};
+}
+
+int most_lights(const SolveOptions& options) {
+  return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
 }
 
 int verification_samples(const SolveOptions& options, std::size_t receivers) {
@@ -215,32 +233,44 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
                                                 {"indirect_relative_error", transport.cache.indirect_relative_error}});
   const auto samples = select(problem.target.receivers.samples, importance.chosen);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, options, control);
-  const Observations published = observe(problem.target, importance.chosen, fixed, SolveMethod::kThesis);
-  const Observations observations = observe(problem.target, importance.chosen, fixed, options.method);
-  if (!(observations.wanted.array() > 0).any())
+  const Observations published = observe(problem.target, importance, fixed, false);
+  if (!(published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
   const LightResponse response(problem.tracer, samples, transport.cache);
   clock.finish("fixed_illumination", {});
 
-  const LightDistribution distribution = estimate_light_distribution(response, observations, options.weak_light);
-  if (distribution.rounds[1].lights.empty())
+  const bool joint = options.method == SolveMethod::kJoint;
+  const Observations judged = joint ? observe(problem.target, importance, fixed, true) : published;
+  Observations remaining = published;
+  std::optional<ExactIndirect> exact;
+  LightEstimates beside_surfaces;
+  if (joint) {
+    exact.emplace(problem.tracer, samples, transport.cache.settings);
+    clock.finish("exact_indirect", {});
+    beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
+    remaining = with_capped_weights(published);
+    remaining.wanted -= illumination_of(response, beside_surfaces);
+    result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
+  }
+
+  const LightDistribution distribution = estimate_light_distribution(response, remaining, options.weak_light);
+  if (distribution.rounds[1].lights.empty() && beside_surfaces.empty())
     no_light_possible(problem, "no position in the region lights the painted surfaces");
   result.initial_seconds += clock.finish("nnls", distribution_figures(distribution));
-  const LightEstimates clusters = segment_distribution(distribution, observations);
+  const LightEstimates clusters = segment_distribution(distribution, remaining);
   result.initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
 
-  const LightTree tree = make_light_tree(response, observations, clusters);
+  const LightTree tree = make_light_tree(response, remaining, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
-  const Optimum optimum = options.method == SolveMethod::kThesis
-                              ? optimize_as_published(response, observations, tree, options, clock)
-                              : optimize_jointly(ExactIndirect(problem.tracer, samples, transport.cache.settings),
-                                                 response, published, observations, tree, options, clock);
+  const Optimum optimum =
+      joint ? optimize_jointly(*exact, response, remaining, judged, beside_surfaces, tree, options, clock)
+            : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
-  result.lights = found_lights(response, observations, optimum.lights);
-  result.initial_relative_l2 = relative_error(published, illumination_of(response, optimum.start));
-  result.relative_l2_cached = relative_error(published, illumination_of(response, optimum.lights));
+  result.lights = found_lights(response, judged, optimum.lights);
+  result.initial_relative_l2 = relative_error(judged, illumination_of(response, optimum.start));
+  result.relative_l2_cached = relative_error(judged, illumination_of(response, optimum.lights));
   result.termination = optimum.termination;
   result.target_noise = target_noise(problem.target);
   verify(problem, options, control, result);

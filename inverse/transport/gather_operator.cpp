@@ -204,6 +204,20 @@ std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const G
   return direct;
 }
 
+// term + K term + K² term + …, as many as there are bounces.
+std::vector<LightBlock> sum_of_bounces(const SparseTransport& point_from_point, std::vector<LightBlock> term,
+                                       int bounces) {
+  std::vector<LightBlock> sum = term, next(term.size());
+  const int most = bounces < 0 ? kMostBounces : bounces;
+  for (int bounce = 1; bounce < most; ++bounce) {
+    multiply(point_from_point, term, next);
+    std::swap(term, next);
+    add(sum, term);
+    if (bounces < 0 && squared_norm(term) <= kNegligibleBounce * kNegligibleBounce * squared_norm(sum)) break;
+  }
+  return sum;
+}
+
 }  // namespace
 
 float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
@@ -233,16 +247,42 @@ std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const Gat
                                               std::span<const Vec3f> lights) {
   std::vector<LightBlock> result(gather.receiver_from_point.row_count());
   if (gather.points.empty()) return result;
-  std::vector<LightBlock> term = direct_at_gather_points(tracer, gather, lights);
-  std::vector<LightBlock> sum = term, next(term.size());
-  const int bounces = gather.bounces < 0 ? kMostBounces : gather.bounces;
-  for (int bounce = 1; bounce < bounces; ++bounce) {
-    multiply(gather.point_from_point, term, next);
-    std::swap(term, next);
-    add(sum, term);
-    if (gather.bounces < 0 && squared_norm(term) <= kNegligibleBounce * kNegligibleBounce * squared_norm(sum)) break;
-  }
+  const std::vector<LightBlock> sum =
+      sum_of_bounces(gather.point_from_point, direct_at_gather_points(tracer, gather, lights), gather.bounces);
   multiply(gather.receiver_from_point, sum, result);
+  return result;
+}
+
+std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather,
+                                                    std::span<const std::size_t> receivers) {
+  std::vector<LightBlock> first(gather.points.size());
+  for (std::size_t l = 0; l < receivers.size(); ++l) {
+    for (const SparseTransport::Entry& entry : gather.receiver_from_point.row(receivers[l])) {
+      for (int c = 0; c < 3; ++c) first[entry.column].channel[c][l] += entry.weight[c];
+    }
+  }
+  if (gather.points.empty()) return first;
+  return sum_of_bounces(gather.point_from_point.transposed(gather.points.size()), std::move(first), gather.bounces);
+}
+
+std::vector<Vec3f> indirect_illumination_at(const RayTracer& tracer, const GatherOperator& gather,
+                                            std::span<const LightBlock> importance, std::size_t receiver_count,
+                                            Vec3f light) {
+  std::vector<float> direct(gather.points.size());
+  renderer::parallel_for(direct.size(), [&](std::size_t i) {
+    direct[i] = direct_at_gather_point(tracer, gather, i, light, std::uint32_t(i * 0x9e3779b9U));
+  });
+  LightBlock sum;
+  for (std::size_t i = 0; i < direct.size(); ++i) {
+    if (direct[i] <= 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      for (int l = 0; l < kLightBlock; ++l) sum.channel[c][l] += direct[i] * importance[i].channel[c][l];
+    }
+  }
+  std::vector<Vec3f> result(receiver_count);
+  for (std::size_t l = 0; l < receiver_count; ++l) {
+    result[l] = {sum.channel[0][l], sum.channel[1][l], sum.channel[2][l]};
+  }
   return result;
 }
 

@@ -47,6 +47,17 @@ GatherOperator make_gather_operator(const renderer::RayTracer& tracer,
 std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const renderer::Vec3f> lights);
 
+// The adjoint: what each gather point gives to up to kLightBlock of the receivers, over all bounces, per direct
+// illumination of 1 that falls on it. One block per gather point; lane l belongs to receivers[l].
+std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather,
+                                                    std::span<const std::size_t> receivers);
+
+// Indirect illumination of these receivers under one unity light: as indirect_illumination, for a shadow ray per gather
+// point and little else.
+std::vector<renderer::Vec3f> indirect_illumination_at(const renderer::RayTracer& tracer, const GatherOperator& gather,
+                                                      std::span<const LightBlock> importance,
+                                                      std::size_t receiver_count, renderer::Vec3f light);
+
 // Illumination of a surface sample by a unity light if nothing stands between: cosθ / (π d²), 0 below the horizon.
 float unoccluded_illumination(const renderer::SurfaceSample& at, renderer::Vec3f light);
 

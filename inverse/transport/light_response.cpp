@@ -143,15 +143,24 @@ Column LightResponse::interpolated_indirect(const Vector3d& position) const {
   return indirect(interpolation_weights(position));
 }
 
-Column LightResponse::evaluate(const Vector3d& position, VisibilitySource source) const {
-  const std::vector<Weight> weights = interpolation_weights(position);
-  const std::vector<double> visible = visibility(position, source, weights);
-  Column column = indirect(weights);
+void LightResponse::add_direct(const Vector3d& position, const std::vector<double>& visible, Column& column) const {
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     if (visible[i] <= 0) continue;
     const double direct = visible[i] * double(unoccluded_illumination(receivers_[i], vec3f(position)));
     column.row(Eigen::Index(i)).array() += direct;
   }
+}
+
+Column LightResponse::direct(const Vector3d& position) const {
+  Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
+  add_direct(position, visibility(position, VisibilitySource::kTraced, {}), column);
+  return column;
+}
+
+Column LightResponse::evaluate(const Vector3d& position, VisibilitySource source) const {
+  const std::vector<Weight> weights = interpolation_weights(position);
+  Column column = indirect(weights);
+  add_direct(position, visibility(position, source, weights), column);
   return column;
 }
 

@@ -35,7 +35,8 @@ class LightResponse {
   // Positions outside the grid's region take the indirect part of the nearest point of its border.
   Column evaluate(const Eigen::Vector3d& position, VisibilitySource visibility) const;
   ColumnWithGradient evaluate_with_gradient(const Eigen::Vector3d& position, VisibilitySource visibility) const;
-  // The indirect part alone.
+  // The direct part alone, visibility traced; the indirect part alone.
+  Column direct(const Eigen::Vector3d& position) const;
   Column interpolated_indirect(const Eigen::Vector3d& position) const;
   // The column of a grid light, as baked.
   Column grid_column(std::size_t light) const;
@@ -48,6 +49,7 @@ class LightResponse {
   };
   std::vector<Weight> interpolation_weights(const Eigen::Vector3d& position) const;
   Column indirect(const std::vector<Weight>& weights) const;
+  void add_direct(const Eigen::Vector3d& position, const std::vector<double>& visible, Column& column) const;
   std::vector<double> visibility(const Eigen::Vector3d& position, VisibilitySource source,
                                  const std::vector<Weight>& weights) const;
 

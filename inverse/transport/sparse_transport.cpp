@@ -48,6 +48,14 @@ SparseTransport SparseTransport::from_rows(std::vector<std::vector<Entry>>&& row
   return matrix;
 }
 
+SparseTransport SparseTransport::transposed(std::size_t columns) const {
+  std::vector<std::vector<Entry>> rows(columns);
+  for (std::size_t i = 0; i < row_count(); ++i) {
+    for (const Entry& entry : row(i)) rows[entry.column].push_back({std::uint32_t(i), entry.weight});
+  }
+  return from_rows(std::move(rows));
+}
+
 void multiply(const SparseTransport& matrix, std::span<const LightBlock> in, std::span<LightBlock> result) {
   constexpr std::size_t kRows = 512;
   renderer::parallel_for((matrix.row_count() + kRows - 1) / kRows, [&](std::size_t chunk) {

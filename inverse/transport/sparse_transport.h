@@ -21,6 +21,9 @@ class SparseTransport {
   // Rows in order; entries of one row with the same column are added up.
   static SparseTransport from_rows(std::vector<std::vector<Entry>>&& rows);
 
+  // Rows become columns; `columns` of this matrix become rows.
+  SparseTransport transposed(std::size_t columns) const;
+
   std::size_t row_count() const { return row_start_.size() - 1; }
   std::span<const Entry> row(std::size_t i) const {
     return {entries_.data() + row_start_[i], entries_.data() + row_start_[i + 1]};

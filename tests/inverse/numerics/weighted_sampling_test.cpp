@@ -77,6 +77,29 @@ TEST(WeightedSampling, InclusionFrequenciesAreExact) {
   }
 }
 
+TEST(WeightedSampling, InclusionProbabilitiesAreThoseOfManyDraws) {
+  std::vector<double> weights;
+  for (int i = 0; i < 300; ++i) weights.push_back(0.02 + std::pow(double(i % 30) / 29, 3));
+  const std::vector<double> expected = inclusion_probabilities(weights, 60);
+  EXPECT_NEAR(std::accumulate(expected.begin(), expected.end(), 0.0), 60, 1e-6);
+  const int trials = 20000;
+  std::vector<double> found(30, 0);  // of each kind of weight
+  for (int seed = 0; seed < trials; ++seed) {
+    for (const std::size_t i : sample_without_replacement(weights, 60, std::uint64_t(seed)))
+      found[i % 30] += 0.1 / trials;
+  }
+  for (int k = 0; k < 30; ++k) {
+    const double sigma = std::sqrt(expected[k] * (1 - expected[k]) / (10.0 * trials));
+    EXPECT_NEAR(found[k], expected[k], 4 * sigma + 1e-3) << weights[k];
+  }
+}
+
+TEST(WeightedSampling, InclusionIsCertainWhereAllAreTaken) {
+  EXPECT_EQ(inclusion_probabilities(std::vector<double>{2, 0, 1e-9}, 2), (std::vector<double>{1, 0, 1}));
+  EXPECT_EQ(inclusion_probabilities(std::vector<double>{0, 0}, 1), (std::vector<double>{0, 0}));
+  EXPECT_TRUE(inclusion_probabilities({}, 3).empty());
+}
+
 TEST(WeightedSampling, TheUnitOfTheWeightsDoesNotMatter) {
   const std::vector<double> weights{1, 2, 3, 4, 5, 6, 7};
   for (const double unit : {0x1p-1000, 0x1p-100, 0x1p100, 0x1p1000}) {

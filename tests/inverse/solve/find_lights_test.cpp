@@ -172,7 +172,7 @@ TEST_P(CountedLights, AreCountedAndFound) {
   const LightEstimates known = known_lights(GetParam());
   const DirectProblem problem(known);
   const LightCountResult result =
-      choose_light_count(problem.response(), problem.exact(), problem.observations(), tree_of(problem), {});
+      choose_light_count(problem.response(), problem.observations(), tree_of(problem), {});
   EXPECT_EQ(result.lights.size(), known.size()) << ::testing::PrintToString(result.error_curve);
   EXPECT_LT(farthest_from(known, positions_of(result.lights)), 0.01 * problem.diagonal());
   EXPECT_LT(result.error, 0.02);
@@ -189,15 +189,15 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   LightCountOptions options;
   options.max_lights = 2;
   EXPECT_LE(
-      choose_light_count(problem.response(), problem.exact(), problem.observations(), tree, options).lights.size(), 2U);
+      choose_light_count(problem.response(), problem.observations(), tree, options).lights.size(), 2U);
   options = {};
   options.exact_lights = 4;
   EXPECT_EQ(
-      choose_light_count(problem.response(), problem.exact(), problem.observations(), tree, options).lights.size(), 4U);
+      choose_light_count(problem.response(), problem.observations(), tree, options).lights.size(), 4U);
   options = {};
   options.time_limit = 1e-9;
   EXPECT_TRUE(
-      choose_light_count(problem.response(), problem.exact(), problem.observations(), tree, options).out_of_time);
+      choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
 }
 
 }  // namespace

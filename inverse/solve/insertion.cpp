@@ -1,0 +1,107 @@
+#include "inverse/solve/insertion.h"
+
+#include <algorithm>
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr std::size_t kDarkest = 16;  // receivers in front of which a light is tried …
+constexpr float kFarthest = 0.05F;    // … from this part of the region's diagonal …
+constexpr float kNearest = 0.0005F;   // … down to this one …
+constexpr float kStep = 1.5F;         // … in these steps
+// Along the normal, and around it at 30 and at 60 degrees.
+constexpr Vec3f kDirections[] = {{0, 0, 1},           {.5F, 0, .87F},    {-.25F, .43F, .87F}, {-.25F, -.43F, .87F},
+                                 {.87F, 0, .5F},      {.43F, .75F, .5F}, {-.43F, .75F, .5F},  {-.87F, 0, .5F},
+                                 {-.43F, -.75F, .5F}, {.43F, -.75F, .5F}};
+
+// The candidate that explains most, or none.
+LightEstimates best_insertion(const Observations& residual, const LightEstimates& places,
+                              const std::vector<Column>& columns) {
+  LightEstimates best;
+  double best_gain = 0;
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    LightEstimate place = places[j];
+    const double gain = fit_intensity(residual, columns[j], place);
+    if (gain > best_gain) best_gain = gain, best = {place};
+  }
+  return best;
+}
+
+std::vector<std::size_t> darkest_receivers(const Observations& residual) {
+  std::vector<std::pair<double, std::size_t>> lack;
+  for (Eigen::Index i = 0; i < residual.wanted.rows(); ++i) {
+    const double painted = residual.sqrt_weight[i] > 0 ? 1 : 0;
+    lack.emplace_back(-painted * residual.wanted.row(i).sum(), std::size_t(i));
+  }
+  const std::size_t count = std::min(kDarkest, lack.size());
+  std::partial_sort(lack.begin(), lack.begin() + std::ptrdiff_t(count), lack.end());
+  std::vector<std::size_t> darkest;
+  for (std::size_t k = 0; k < count; ++k) darkest.push_back(lack[k].second);
+  return darkest;
+}
+
+// By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
+LightEstimates direct_lights(const LightResponse& response, const std::vector<Eigen::Vector3d>& positions) {
+  LightEstimates lights;
+  for (const Eigen::Vector3d& p : positions) {
+    LightEstimate light{p, Eigen::Array3d::Ones()};
+    light.correction = -response.interpolated_indirect(p);
+    lights.push_back(std::move(light));
+  }
+  return lights;
+}
+
+LightEstimates best_on_grid(const LightResponse& response, const Observations& residual) {
+  LightEstimates places;
+  std::vector<Column> columns;
+  for (std::size_t j = 0; j < response.grid().positions.size(); ++j) {
+    const Vec3f p = response.grid().positions[j];
+    places.push_back({{p.x, p.y, p.z}, Eigen::Array3d::Ones()});
+    columns.push_back(response.grid_column(j));
+  }
+  return best_insertion(residual, places, columns);
+}
+
+}  // namespace
+
+double fit_intensity(const Observations& observations, const Column& column, LightEstimate& light) {
+  const Eigen::VectorXd weight = observations.sqrt_weight.cwiseAbs2();
+  const Column weighted = weight.asDiagonal() * column;
+  const Eigen::Array3d along = weighted.cwiseProduct(observations.wanted).colwise().sum().transpose().array().max(0);
+  const Eigen::Array3d squared = weighted.cwiseProduct(column).colwise().sum().transpose().array().max(1e-300);
+  light.intensity = along / squared;
+  return (along.square() / squared).sum();
+}
+
+std::vector<Eigen::Vector3d> places_in_front(const LightResponse& response, const std::vector<std::size_t>& receivers,
+                                             float distance) {
+  std::vector<Eigen::Vector3d> places;
+  for (const std::size_t i : receivers) {
+    const renderer::SurfaceSample& at = response.receivers()[i];
+    const renderer::Frame3f frame(at.normal);
+    for (const Vec3f& direction : kDirections) {
+      const Vec3f p = at.position + distance * frame.world_from_local(direction);
+      if (response.grid().region.contains(p)) places.emplace_back(p.x, p.y, p.z);
+    }
+  }
+  return places;
+}
+
+LightEstimates propose_insertions(const LightResponse& response, const Observations& observations,
+                                  const LightEstimates& lights) {
+  Observations residual = observations;
+  residual.wanted -= total_illumination(evaluate_columns(response, lights, VisibilitySource::kTraced), lights,
+                                        observations.wanted.rows());
+  const std::vector<std::size_t> darkest = darkest_receivers(residual);
+  LightEstimates proposals;
+  for (float t = kFarthest; t > kNearest; t /= kStep) {
+    const LightEstimates places =
+        direct_lights(response, places_in_front(response, darkest, t * response.grid().region.diagonal()));
+    const std::vector<Column> columns = evaluate_columns(response, places, VisibilitySource::kTraced);
+    for (const LightEstimate& best : best_insertion(residual, places, columns)) proposals.push_back(best);
+  }
+  for (const LightEstimate& best : best_on_grid(response, residual)) proposals.push_back(best);
+  return proposals;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,71 @@
+#include "inverse/solve/settle_positions.h"
+
+#include "inverse/numerics/nelder_mead.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr int kCycles = 2;
+constexpr int kEvaluations = 80;  // per light and cycle
+
+class Settling {
+ public:
+  Settling(const LightResponse& response, const Observations& observations, const LightEstimates& start)
+      : response_(response),
+        observations_(observations),
+        columns_(evaluate_columns(response, start, VisibilitySource::kTraced)),
+        best_{start, relative_error(observations, total_illumination(columns_, start, observations.wanted.rows())), 0} {
+  }
+
+  void settle(std::size_t moved, double step) {
+    const Box3f region = response_.grid().region;
+    const Eigen::VectorXd lower = Eigen::Vector3d(region.min.x, region.min.y, region.min.z);
+    const Eigen::VectorXd upper = Eigen::Vector3d(region.max.x, region.max.y, region.max.z);
+    numerics::NelderMeadOptions options;
+    options.max_evaluations = kEvaluations;
+    options.restart = false;
+    numerics::nelder_mead([&](const Eigen::VectorXd& position) { return error_with(moved, position); },
+                          best_.lights[moved].position, Eigen::VectorXd::Constant(3, step), lower, upper, options);
+    columns_[moved] = column(moved, best_.lights[moved].position);
+  }
+
+  const SettledLights& best() const { return best_; }
+
+ private:
+  Column column(std::size_t light, const Eigen::Vector3d& position) const {
+    Column c = response_.evaluate(position, VisibilitySource::kTraced);
+    if (best_.lights[light].correction.size() > 0) c += best_.lights[light].correction;
+    return c;
+  }
+
+  double error_with(std::size_t moved, const Eigen::Vector3d& position) {
+    ++best_.evaluations;
+    columns_[moved] = column(moved, position);
+    const IntensityFit fit = fit_intensities(observations_, columns_);
+    LightEstimates lights = best_.lights;
+    lights[moved].position = position;
+    for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
+    const double error =
+        relative_error(observations_, total_illumination(columns_, lights, observations_.wanted.rows()));
+    if (error < best_.error) best_.lights = std::move(lights), best_.error = error;
+    return error;
+  }
+
+  const LightResponse& response_;
+  const Observations& observations_;
+  std::vector<Column> columns_;  // at the positions last tried
+  SettledLights best_;
+};
+
+}  // namespace
+
+SettledLights settle_positions(const LightResponse& response, const Observations& observations,
+                               const LightEstimates& start, double step) {
+  Settling settling(response, observations, start);
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    for (std::size_t j = 0; j < start.size(); ++j) settling.settle(j, step);
+  }
+  return settling.best();
+}
+
+}  // namespace chiaro::inverse
