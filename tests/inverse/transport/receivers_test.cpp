@@ -4,8 +4,8 @@
 
 #include "renderer/core/error.h"
 #include "renderer/io/load_gltf.h"
-#include "tests/inverse/target/temporary_folder.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -98,7 +98,7 @@ TEST(Receivers, SamplesLieOnTheSurfaceCloseToTheirVertex) {
 TEST(Receivers, RoundTripThroughAMeshFileKeepsTheFingerprint) {
   const Scene scene = test::corner_with_ball();
   const Receivers receivers = make_receivers(scene, {.max_edge = 0.2F});
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   save_vertex_mesh(mesh_from_receivers(receivers), folder.path() / "receivers.glb", 1);
   const Receivers again = receivers_from_mesh(renderer::load_vertex_mesh(folder.path() / "receivers.glb"));
   EXPECT_EQ(fingerprint(again), fingerprint(receivers));
