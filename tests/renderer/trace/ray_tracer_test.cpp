@@ -5,6 +5,7 @@
 #include "renderer/core/sampler.h"
 #include "renderer/trace/surface_point.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/directions.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -12,11 +13,7 @@ namespace {
 using test::add_mesh;
 using test::lambert;
 using test::rectangle;
-
-Vec3f uniform_direction(Vec2f u) {
-  const float z = 1 - 2 * u.x, sine = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * kPi * u.y;
-  return {sine * std::cos(phi), sine * std::sin(phi), z};
-}
+using test::uniform_direction;
 
 Mat4f turned(Vec3f translation, Vec3f scale) {
   return make_transform(translation, {0.18257419F, 0.36514837F, 0.54772256F, 0.73029674F}, scale);
