@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/test_names.h"
+
 namespace chiaro::cli {
 namespace {
 
@@ -38,6 +40,13 @@ TEST_P(CliWrongUsage, ExitsWithTwoAndOneOrTwoLines) {
 }
 
 using Arguments = std::vector<const char*>;
+
+std::string name_of(const testing::TestParamInfo<Arguments>& info) {
+  std::string words;
+  for (const std::string word : info.param) words += " " + (word.empty() ? "empty" : word);
+  return test::test_name(words);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     CommandLines, CliWrongUsage,
     testing::Values(Arguments{}, Arguments{"paintt"}, Arguments{"inspect"}, Arguments{"inspect", "a.glb", "b.glb"},
@@ -65,7 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
                               "2,2,2"},
                     Arguments{"paint", "a.glb", "--strokes", "s.json", "-o", "t.glb", "--unpainted-weight", "-1"},
                     Arguments{"compare", "a.exr", "b.exr", "--fail-above", "-1"},
-                    Arguments{"compare", "a.glb", "b.glb", "-o", "d.png"}));
+                    Arguments{"compare", "a.glb", "b.glb", "-o", "d.png"}),
+    name_of);
 
 TEST(CliProgram, AMissingFileIsOneLineOfError) {
   const Outcome outcome = run_with({"inspect", "no/such/file.glb"});
