@@ -1,23 +1,20 @@
 #include "inverse/transport/bake.h"
 
-#include <chrono>
 #include <numeric>
 
 #include "inverse/transport/gather_operator.h"
+#include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
 namespace {
 
 using renderer::RayTracer;
+using renderer::seconds_since;
 using renderer::SurfaceSample;
 
 // Entries on which the indirect part is held against the path tracer.
 constexpr std::size_t kCheckedLights = 6, kCheckedReceivers = 256;
 constexpr int kCheckSamples = 256;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::size_t bake_visibility(const RayTracer& tracer, const Receivers& receivers, TransportCache& cache,
                             const renderer::Control& control) {
