@@ -27,8 +27,7 @@ std::size_t bake_visibility(const RayTracer& tracer, const Receivers& receivers,
       const SurfaceSample& at = receivers.samples[i];
       if (dot(position - at.position, at.normal) <= 0) continue;
       const Vec3f from = renderer::offset_point(at.position, at.normal);
-      // All rays of a light start in one point: the order Embree likes.
-      visibility[i] = tracer.occluded_between(position, from, std::uint32_t(light * 0x9e3779b9U + i)) ? 0 : 1;
+      visibility[i] = tracer.occluded_between(from, position, std::uint32_t(light * 0x9e3779b9U + i)) ? 0 : 1;
       ++rays[light];
     }
   });

@@ -88,20 +88,45 @@ std::vector<std::uint32_t> largest_face_per_vertex(const Receivers& r) {
   return face;
 }
 
-void place_samples(Receivers& r) {
+Box3f bounds(std::span<const Vec3f> positions) {
   Box3f box;
-  for (const Vec3f& p : r.positions) box.extend(p);
+  for (const Vec3f& p : positions) box.extend(p);
+  return box;
+}
+
+// Any triangle of the scene that a part was split from lies within the part's bounds.
+float part_rounding(const Receivers& r, const Receivers::Part& part) {
+  const Box3f box = bounds(std::span(r.positions).subspan(part.first_receiver, part.receiver_count));
+  return renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
+}
+
+// Zero for a triangle without area.
+Vec3f face_normal(const Receivers& r, const Triangle& t) {
+  const Vec3f area = cross(r.positions[t[1]] - r.positions[t[0]], r.positions[t[2]] - r.positions[t[0]]);
+  return length_squared(area) > 0 ? normalize(area) : Vec3f{};
+}
+
+// Off the edges of the vertex's largest face, and off the face to the side of the vertex's normal.
+Vec3f sample_position(const Receivers& r, std::size_t i, const Triangle& face, float nudge, float rounding) {
+  const Vec3f vertex = r.positions[i];
+  const Vec3f inward = (r.positions[face[0]] + r.positions[face[1]] + r.positions[face[2]]) / 3 - vertex;
+  const float distance = length(inward);
+  const Vec3f inside = distance > 0 ? vertex + std::min(kLongestNudge, nudge / distance) * inward : vertex;
+  const Vec3f normal = face_normal(r, face);
+  return inside + std::copysign(rounding, dot(normal, r.normals[i])) * normal;
+}
+
+void place_samples(Receivers& r) {
+  const float nudge = kNudge * bounds(r.positions).diagonal();
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
   r.samples.resize(r.size());
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    Vec3f position = r.positions[i];
-    if (face[i] != ~0U) {
-      const auto& [a, b, c] = r.triangles[face[i]];
-      const Vec3f inward = (r.positions[a] + r.positions[b] + r.positions[c]) / 3 - position;
-      const float distance = length(inward);
-      if (distance > 0) position += std::min(kLongestNudge, kNudge * box.diagonal() / distance) * inward;
+  for (const Receivers::Part& part : r.parts) {
+    const float rounding = part_rounding(r, part);
+    for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
+      const Vec3f position =
+          face[i] == ~0U ? r.positions[i] : sample_position(r, i, r.triangles[face[i]], nudge, rounding);
+      r.samples[i] = {position, r.normals[i]};
     }
-    r.samples[i] = {position, r.normals[i]};
   }
 }
 
@@ -120,10 +145,8 @@ void repair_normals(Receivers& r) {
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (length_squared(r.normals[i]) > 0.25F) continue;
     Vec3f n{0, 1, 0};
-    if (face[i] != ~0U) {
-      const auto& [a, b, c] = r.triangles[face[i]];
-      const Vec3f area = cross(r.positions[b] - r.positions[a], r.positions[c] - r.positions[a]);
-      if (length_squared(area) > 0) n = normalize(area);
+    if (face[i] != ~0U && length_squared(face_normal(r, r.triangles[face[i]])) > 0) {
+      n = face_normal(r, r.triangles[face[i]]);
     }
     r.normals[i] = n;
   }

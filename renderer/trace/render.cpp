@@ -44,7 +44,7 @@ PixelSample sample_pixel(const FrameTask& task, int x, int y, std::uint32_t inde
   sample.beauty = sample.light.direct + sample.light.indirect;
   if (film.wants_illumination()) {
     PathLight light;
-    task.paths.add_illumination(point.position, point.shading_normal, true, sampler, light);
+    task.paths.add_illumination(point, sampler, light);
     sample.illumination = light.direct + light.indirect;
   }
   return sample;

@@ -127,6 +127,25 @@ TEST(Receivers, OfAPlaneUnderALightHaveTheClosedForm) {
   }
 }
 
+// A tilted plane through the origin, so many metres across, and a light a tenth of that above it.
+TEST(Receivers, NoneIsHiddenByItsOwnPlaneWhateverItsSize) {
+  for (const float size : {3e-3F, 9e-3F, 3.0F, 9.0F, 30.0F, 3e3F, 3e4F}) {
+    for (const Vec3f tilt : {Vec3f{1, 2, 3}, Vec3f{-3, 1, 0.2F}, Vec3f{0.1F, -1, 0.3F}}) {
+      const renderer::Frame3f frame(normalize(tilt));
+      const Vec3f u = size * frame.tangent, v = size * frame.bitangent;
+      Scene scene;
+      test::add_mesh(scene, test::rectangle(-0.45F * u - 0.55F * v, u, v), test::lambert({1, 1, 1}), "plane");
+      const RayTracer tracer(scene);
+      const Receivers receivers = make_receivers(scene, {.max_edge = size / 50});
+      ASSERT_GT(receivers.size(), 2000U);
+      const renderer::PointLight light{"", 0.1F * size * frame.normal, Vec3f{1, 1, 1} * (size * size)};
+      const auto lit = trace_illumination(tracer, receivers.samples, {light}, {.samples = 1, .bounces = 0});
+      const auto dark = std::count(lit.value.begin(), lit.value.end(), Vec3f{});
+      EXPECT_EQ(dark, 0) << size << " m across, of " << receivers.size();
+    }
+  }
+}
+
 TEST(Receivers, OfAnotherSceneAreToldByTheirPlaces) {
   const Scene scene = test::corner_with_ball(), other = own_scene("cornell.glb");
   const RayTracer tracer(scene), other_tracer(other);
