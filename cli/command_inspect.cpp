@@ -40,7 +40,7 @@ int run_inspect(const InspectCommand& options) {
   Inspection inspection = inspect(options.file);
   session.warn(inspection.warnings);
   inspection.summary.emplace_back("warnings", json_list(inspection.warnings));
-  session.finish_always(inspection.summary, aligned_rows(inspection.rows));
+  session.finish(inspection.summary, aligned_rows(inspection.rows));
   return kDone;
 }
 

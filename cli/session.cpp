@@ -45,9 +45,4 @@ void Session::finish(const Json& summary, const std::string& text) {
   }
 }
 
-void Session::finish_always(const Json& summary, const std::string& text) {
-  print_warnings();
-  print(options_.json ? json_text(summary) : text);
-}
-
 }  // namespace chiaro::cli
