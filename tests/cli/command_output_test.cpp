@@ -3,13 +3,17 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "renderer/core/atomic_file.h"
 #include "renderer/image/image_file.h"
 #include "tests/cli/run_with.h"
+#include "tests/inverse/target/foreign_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::cli {
 namespace {
 
+using inverse::tests::ForeignNode;
+using inverse::tests::write_foreign_mesh;
 using nlohmann::json;
 using test::TemporaryFolder;
 using tests::Outcome;
@@ -69,6 +73,40 @@ TEST(CliInspect, QuietSaysByItsExitAloneWhetherAFileIsGood) {
   const Outcome good = run_with({"inspect", kScenes + "cornell.glb", "--quiet"});
   EXPECT_EQ(good.exit_code, kDone);
   EXPECT_EQ(good.standard_output + good.standard_error, "");
+}
+
+const ForeignNode kColoured{"floor", {{"COLOR_0", {0.5F, 0, 0, 0.5F, 0, 0, 0.5F, 0.75F, 0}}}};
+
+json inspected(const std::filesystem::path& file) {
+  return json::parse(run_with({"inspect", file, "--json"}).standard_output);
+}
+
+TEST(CliInspect, BareSurfacesWithColoursAreATarget) {
+  const TemporaryFolder folder;
+  const json found = inspected(write_foreign_mesh(folder, {kColoured, {"unpainted", {}}}));
+  EXPECT_EQ(found["kind"], "target");
+  EXPECT_EQ(found["attribute"], "COLOR_0");
+  EXPECT_EQ(found["receivers"], 6);
+  EXPECT_EQ(found["mean_illumination"], json::array({0.5, 0.25, 0.0}));
+  EXPECT_EQ(found["max_illumination"], json::array({0.5, 0.75, 0.0}));
+  EXPECT_EQ(found["weight"], json({{"min", 0.0}, {"max", 1.0}, {"zero", 3}}));
+}
+
+TEST(CliInspect, ValuesInCandelaComeBeforeColours) {
+  const TemporaryFolder folder;
+  ForeignNode node = kColoured;
+  node.attributes.emplace_back("_ILLUMINATION", std::vector<float>(9, 7));
+  const json found = inspected(write_foreign_mesh(folder, {node}));
+  EXPECT_EQ(found["attribute"], "_ILLUMINATION");
+  EXPECT_EQ(found["mean_illumination"], json::array({7.0, 7.0, 7.0}));
+}
+
+TEST(CliInspect, ColouredSurfacesWithMaterialsAreAScene) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = write_foreign_mesh(folder, {kColoured});
+  json gltf = json::parse(renderer::read_file(file));
+  gltf["materials"] = json::array({{{"name", "wood"}}});
+  EXPECT_EQ(inspected(folder.write("scene.gltf", gltf.dump()))["kind"], "scene");
 }
 
 }  // namespace
