@@ -1,5 +1,6 @@
 #include "inverse/transport/receivers.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "renderer/core/error.h"
@@ -49,6 +50,43 @@ TEST(Receivers, AreTwentyToFiftyThousandByDefault) {
     EXPECT_EQ(first, receivers.size());
     EXPECT_EQ(triangle, receivers.triangles.size());
   }
+}
+
+// Scenes so simple that all their edges are split at once.
+std::vector<Scene> simple_scenes() {
+  std::vector<Scene> scenes;
+  const auto add = [&](renderer::Mesh mesh, const std::string& name) {
+    scenes.emplace_back();
+    test::add_mesh(scenes.back(), std::move(mesh), test::lambert({1, 1, 1}), name);
+  };
+  for (const Vec3f size :
+       {Vec3f{1, 1, 1}, Vec3f{2, 2, 2}, Vec3f{6, 3, 6}, Vec3f{4, 3, 5}, Vec3f{10, 2.7F, 3}, Vec3f{0.3F, 0.1F, 50}}) {
+    add(test::room(size), fmt::format("box {} {} {}", size.x, size.y, size.z));
+  }
+  add(test::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), "square");
+  add(test::rectangle({0, 0, 0}, {30, 0, 0}, {0, 0.02F, 0}), "strip");
+  add(test::rectangle({0, 0, 0}, {1, 0, 0}, {1.9F, 0.01F, 0}), "sheared strip");
+  add(test::rectangle({1, 2, 3}, {1, 0, 0}, {0, 1e-4F, 1e-4F}, 7), "needles");
+  return scenes;
+}
+
+TEST(Receivers, AreTwentyToFiftyThousandInTheSimplestScenesToo) {
+  for (const Scene& scene : simple_scenes()) {
+    const std::size_t count = make_receivers(scene, {}).size();
+    EXPECT_GE(count, 20000U) << scene.meshes[0].name;
+    EXPECT_LE(count, 50000U) << scene.meshes[0].name;
+  }
+}
+
+TEST(Receivers, AreTooManyRatherThanTooFewWhereAStepQuadruplesThem) {
+  // 4ⁿ⁺¹ + 2 vertices: 16 386 or 65 538.
+  Scene octahedron;
+  renderer::Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  mesh.normals = mesh.positions;
+  mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}};
+  test::add_mesh(octahedron, mesh, test::lambert({1, 1, 1}), "octahedron");
+  EXPECT_EQ(make_receivers(octahedron, {}).size(), 65538U);
 }
 
 TEST(Receivers, NeverFewerThanTheScenesVerticesAndNoLongEdge) {
