@@ -45,7 +45,7 @@ int compare_two_targets(const CompareCommand& options, Session& session) {
   session.stop_if_interrupted();
   const inverse::TargetComparison comparison = naming_file(options.a, [&] { return inverse::compare_targets(a, b); });
   const renderer::Vec3f place = b.receivers.positions[comparison.max_at];
-  session.finish_always(comparison_summary(comparison, place), comparison_text(comparison, place));
+  session.finish(comparison_summary(comparison, place), comparison_text(comparison, place));
   return verdict(options, comparison.relative_l2, 0);
 }
 
@@ -69,7 +69,7 @@ int compare_two_frames(const CompareCommand& options, Session& session) {
         linear ? scene_linear_picture(a, b, options.view) : renderer::comparison_picture(a, b);
     renderer::save_image(picture, options.output, renderer::PixelType::kUint8);
   }
-  session.finish_always(comparison_summary(comparison), comparison_text(comparison));
+  session.finish(comparison_summary(comparison), comparison_text(comparison));
   return verdict(options, comparison.relative_l2, comparison.not_finite);
 }
 

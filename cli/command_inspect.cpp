@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <initializer_list>
 #include <memory>
 
 #include "cli/add_options.h"
@@ -19,10 +21,21 @@ struct InspectCommand {
 
 bool mentions(const std::string& bytes, const char* text) { return bytes.find(text) != std::string::npos; }
 
-// Receivers of ours have neither values nor materials; a glTF scene of any other program is a scene.
+bool mentions_any(const std::string& bytes, std::initializer_list<const char*> texts) {
+  return std::any_of(texts.begin(), texts.end(), [&](const char* text) { return mentions(bytes, text); });
+}
+
+// Without any of these a file shows bare surfaces.
+bool is_dressed(const std::string& bytes) {
+  return mentions_any(bytes,
+                      {"\"materials\"", "\"cameras\"", "\"KHR_lights_punctual\"", "\"skins\"", "\"animations\""});
+}
+
+// Receivers of ours have neither values nor materials; painted in another program they carry nothing but colours. A
+// coloured surface with materials is a scene's, although --target would take its colours too.
 bool is_vertex_mesh(const std::string& bytes) {
   if (mentions(bytes, "\"_ILLUMINATION\"")) return true;
-  return mentions(bytes, "\"generator\":\"chiaro\"") && !mentions(bytes, "\"materials\"");
+  return mentions_any(bytes, {"\"generator\":\"chiaro\"", "\"COLOR_0\""}) && !is_dressed(bytes);
 }
 
 Inspection inspect(const std::string& file) {
@@ -40,7 +53,7 @@ int run_inspect(const InspectCommand& options) {
   Inspection inspection = inspect(options.file);
   session.warn(inspection.warnings);
   inspection.summary.emplace_back("warnings", json_list(inspection.warnings));
-  session.finish_always(inspection.summary, aligned_rows(inspection.rows));
+  session.finish(inspection.summary, aligned_rows(inspection.rows));
   return kDone;
 }
 

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/add_options.h"
 #include "cli/commands.h"
@@ -41,17 +42,25 @@ void save_outputs(const RenderCommand& options, const renderer::Camera& camera, 
   if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame.view);
 }
 
+std::vector<std::string> written_files(const RenderCommand& options) {
+  std::vector<std::string> files{options.output};
+  if (options.preview) files.push_back(beside(options.output, ".png").string());
+  return files;
+}
+
 void print_summary(Session& session, const RenderCommand& options, const renderer::Camera& camera,
                    const renderer::Frame& frame) {
+  const std::vector<std::string> written = written_files(options);
   JsonObject summary{{"output", options.output}};
   if (options.preview) summary.emplace_back("preview", beside(options.output, ".png").string());
   for (auto& figure : frame_summary(frame, camera.name)) summary.push_back(std::move(figure));
+  summary.emplace_back("written", json_list(written));
   session.finish(summary, aligned_rows({{"camera", camera.name},
                                         {"size", fmt::format("{} x {} pixels", frame.image.width, frame.image.height)},
                                         {"samples", fmt::format("{} per pixel", frame.samples)},
                                         {"relative standard error", text_of_percent(frame.relative_standard_error)},
                                         {"time", text_of_seconds(frame.seconds)},
-                                        {"written", options.output}}));
+                                        {"written", fmt::format("{}", fmt::join(written, ", "))}}));
 }
 
 int run_render(const RenderCommand& options) {

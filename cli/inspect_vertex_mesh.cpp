@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@ namespace {
 
 using renderer::Vec3f;
 using renderer::VertexMesh;
+using renderer::VertexMeshPart;
 
 // Over all vertices that carry a value.
 struct IlluminationFigures {
@@ -33,32 +35,40 @@ struct IlluminationFigures {
 };
 
 struct WeightFigures {
-  double min = 1, max = 1;
+  double min = std::numeric_limits<double>::infinity(), max = 0;
   std::size_t zero = 0;
 };
 
+bool has_values(const VertexMeshPart& part) { return !part.illumination.empty() || !part.color.empty(); }
+
+// As a solve takes them, with a --target-scale of 1.
 IlluminationFigures illumination_figures(const VertexMesh& mesh) {
   IlluminationFigures figures;
-  for (const renderer::VertexMeshPart& part : mesh.parts) {
-    for (const Vec3f value : part.illumination) figures.add(value);
+  for (const VertexMeshPart& part : mesh.parts) {
+    for (const Vec3f value : part.illumination.empty() ? part.color : part.illumination) figures.add(value);
     // The error stored is the root mean square over three channels.
     for (const float error : part.standard_error) figures.error_squares += 3 * double(error) * double(error);
   }
   return figures;
 }
 
+// A part without values weighs nothing, one without weights 1.
 WeightFigures weight_figures(const VertexMesh& mesh) {
   WeightFigures figures;
-  bool first = true;
-  for (const renderer::VertexMeshPart& part : mesh.parts) {
-    for (const float weight : part.weight) {
-      figures.min = first ? double(weight) : std::min(figures.min, double(weight));
-      figures.max = first ? double(weight) : std::max(figures.max, double(weight));
+  for (const VertexMeshPart& part : mesh.parts) {
+    for (std::size_t i = 0; i < part.positions.size(); ++i) {
+      const float weight = !has_values(part) ? 0 : part.weight.empty() ? 1 : part.weight[i];
+      figures.min = std::min(figures.min, double(weight));
+      figures.max = std::max(figures.max, double(weight));
       figures.zero += weight == 0;
-      first = false;
     }
   }
   return figures;
+}
+
+bool has_illumination(const VertexMesh& mesh) {
+  return std::any_of(mesh.parts.begin(), mesh.parts.end(),
+                     [](const VertexMeshPart& part) { return !part.illumination.empty(); });
 }
 
 void add_receivers(Inspection& inspection, const VertexMesh& mesh) {
@@ -74,6 +84,14 @@ void add_receivers(Inspection& inspection, const VertexMesh& mesh) {
   }
   const std::string fingerprint = inverse::fingerprint(receivers);
   inspection.add("fingerprint", fingerprint, "fingerprint", fingerprint);
+}
+
+void add_attribute(Inspection& inspection, const VertexMesh& mesh) {
+  if (has_illumination(mesh)) {
+    inspection.add("attribute", "_ILLUMINATION", "values", "_ILLUMINATION");
+  } else {
+    inspection.add("attribute", "COLOR_0", "values", "COLOR_0, as with --target-scale 1");
+  }
 }
 
 void add_illumination(Inspection& inspection, const IlluminationFigures& figures) {
@@ -98,6 +116,7 @@ Inspection inspect_vertex_mesh(const std::string& file) {
   Inspection inspection = start_inspection(figures.count > 0 ? "target" : "receivers", file);
   add_receivers(inspection, mesh);
   if (figures.count == 0) return inspection;
+  add_attribute(inspection, mesh);
   add_illumination(inspection, figures);
   add_weights(inspection, weight_figures(mesh));
   if (figures.black == figures.count) inspection.warnings.push_back(file + ": the illumination is black everywhere");

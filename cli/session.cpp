@@ -5,6 +5,7 @@
 #include "cli/interruption.h"
 #include "cli/text_output.h"
 #include "renderer/core/error.h"
+#include "renderer/core/seconds_since.h"
 
 namespace chiaro::cli {
 
@@ -27,9 +28,7 @@ void Session::stop_if_interrupted() const {
   if (control_.stop_requested()) throw renderer::Interruption();
 }
 
-double Session::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+double Session::seconds() const { return renderer::seconds_since(start_); }
 
 void Session::print_warnings() {
   progress_.clear();
@@ -44,11 +43,6 @@ void Session::finish(const Json& summary, const std::string& text) {
   } else if (!options_.quiet) {
     print(text);
   }
-}
-
-void Session::finish_always(const Json& summary, const std::string& text) {
-  print_warnings();
-  print(options_.json ? json_text(summary) : text);
 }
 
 }  // namespace chiaro::cli

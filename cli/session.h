@@ -26,8 +26,6 @@ class Session {
 
   // Prints the warnings, and the summary: as JSON, or as the text for people unless --quiet.
   void finish(const Json& summary, const std::string& text);
-  // The same, with the text even under --quiet.
-  void finish_always(const Json& summary, const std::string& text);
 
  private:
   void print_warnings();

@@ -18,6 +18,7 @@ from shapes import (
     pillow,
     quad,
     revolve,
+    room_sides,
     rounded_box,
     sheet,
     torus,
@@ -85,30 +86,21 @@ def build():
 
 
 def _room(scene, paint):
-    h = HEIGHT
-    corners = [(LEFT, 0, FRONT), (RIGHT, 0, FRONT), (RIGHT, 0, BACK), (LEFT, 0, BACK)]
+    sides = room_sides((LEFT, 0, BACK), (RIGHT, HEIGHT, FRONT))
     # One tile of the planks is 1.2 m across and 2.4 m along; they run along x.
-    scene.place("floor", quad(*corners, uvs=[(z / 1.2, x / 2.4) for x, _, z in corners]), paint["planks"])
-    scene.place(
-        "ceiling", quad((LEFT, h, BACK), (RIGHT, h, BACK), (RIGHT, h, FRONT), (LEFT, h, FRONT)), paint["ceiling"]
-    )
-    scene.place(
-        "back wall", quad((LEFT, 0, BACK), (RIGHT, 0, BACK), (RIGHT, h, BACK), (LEFT, h, BACK)), paint["teal wall"]
-    )
-    scene.place(
-        "front wall", quad((RIGHT, 0, FRONT), (LEFT, 0, FRONT), (LEFT, h, FRONT), (RIGHT, h, FRONT)), paint["teal wall"]
-    )
-    scene.place(
-        "right wall", quad((RIGHT, 0, BACK), (RIGHT, 0, FRONT), (RIGHT, h, FRONT), (RIGHT, h, BACK)), paint["sand wall"]
-    )
-    outer = [(LEFT, 0, FRONT), (LEFT, 0, BACK), (LEFT, h, BACK), (LEFT, h, FRONT)]
+    planks = [(z / 1.2, x / 2.4) for x, _, z in sides["floor"]]
+    scene.place("floor", quad(*sides["floor"], uvs=planks), paint["planks"])
+    scene.place("ceiling", quad(*sides["ceiling"]), paint["ceiling"])
+    scene.place("back wall", quad(*sides["back wall"]), paint["teal wall"])
+    scene.place("front wall", quad(*sides["front wall"]), paint["teal wall"])
+    scene.place("right wall", quad(*sides["right wall"]), paint["sand wall"])
     inner = [
         (LEFT, WINDOW_LOW, WINDOW_FRONT),
         (LEFT, WINDOW_LOW, WINDOW_BACK),
         (LEFT, WINDOW_HIGH, WINDOW_BACK),
         (LEFT, WINDOW_HIGH, WINDOW_FRONT),
     ]
-    scene.place("left wall", wall_with_opening(outer, inner, 0.16), paint["sand wall"])
+    scene.place("left wall", wall_with_opening(sides["left wall"], inner, 0.16), paint["sand wall"])
 
 
 def _window(scene, paint):

@@ -4,7 +4,7 @@
 from pathlib import Path
 
 from gltf_builder import Scene
-from shapes import box, quad
+from shapes import box, quad, room_sides
 
 
 def build():
@@ -12,11 +12,11 @@ def build():
     white = scene.material("white", (0.725, 0.71, 0.68))
     red = scene.material("red", (0.63, 0.065, 0.05))
     green = scene.material("green", (0.14, 0.45, 0.091))
-    scene.place("floor", quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)), white)
-    scene.place("ceiling", quad((-1, 2, -1), (1, 2, -1), (1, 2, 1), (-1, 2, 1)), white)
-    scene.place("back wall", quad((-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1)), white)
-    scene.place("left wall", quad((-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)), red)
-    scene.place("right wall", quad((1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)), green)
+    sides = room_sides((-1, 0, -1), (1, 2, 1))
+    for name in ("floor", "ceiling", "back wall"):
+        scene.place(name, quad(*sides[name]), white)
+    scene.place("left wall", quad(*sides["left wall"]), red)
+    scene.place("right wall", quad(*sides["right wall"]), green)
     scene.place("short block", box((-0.3, 0, -0.3), (0.3, 0.6, 0.3)), white, at=(0.33, 0, 0.38), turn=(0, -17, 0))
     scene.place("tall block", box((-0.3, 0, -0.3), (0.3, 1.2, 0.3)), white, at=(-0.33, 0, -0.28), turn=(0, 17, 0))
     scene.camera("front", (0, 1, 3.9), (0, 1, 0), 39, 1)

@@ -4,7 +4,7 @@
 from pathlib import Path
 
 from gltf_builder import Scene
-from shapes import icosphere, quad
+from shapes import icosphere, quad, room_sides
 
 SIZE, HEIGHT = 6.0, 3.0  # metres; the corner is at (-3, 0, -3)
 
@@ -20,12 +20,13 @@ BALLS = [
 
 def build():
     scene = Scene("fiveballs")
-    h, y = SIZE / 2, HEIGHT
+    h = SIZE / 2
     floor = scene.material("floor", (0.66, 0.65, 0.63))
     walls = scene.material("walls", (0.74, 0.73, 0.71))
-    scene.place("floor", quad((-h, 0, h), (h, 0, h), (h, 0, -h), (-h, 0, -h)), floor)
-    scene.place("back wall", quad((-h, 0, -h), (h, 0, -h), (h, y, -h), (-h, y, -h)), walls)
-    scene.place("left wall", quad((-h, 0, h), (-h, 0, -h), (-h, y, -h), (-h, y, h)), walls)
+    sides = room_sides((-h, 0, -h), (h, HEIGHT, h))
+    scene.place("floor", quad(*sides["floor"]), floor)
+    scene.place("back wall", quad(*sides["back wall"]), walls)
+    scene.place("left wall", quad(*sides["left wall"]), walls)
     ball = scene.shape("ball", icosphere(4))
     for name, center, radius, albedo in BALLS:
         scene.place(name, ball, scene.material(name, albedo), at=center, scale=radius)

@@ -61,6 +61,19 @@ def quad(a, b, c, d, uvs=()):
     return Shape([a, b, c, d], [normal] * 4, [(0, 1, 2), (0, 2, 3)], list(uvs))
 
 
+def room_sides(low, high):
+    """The corners of each side of a room by the side's name, as quad() wants them, seen from inside; front is +Z."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    return {
+        "floor": [(x0, y0, z1), (x1, y0, z1), (x1, y0, z0), (x0, y0, z0)],
+        "ceiling": [(x0, y1, z0), (x1, y1, z0), (x1, y1, z1), (x0, y1, z1)],
+        "back wall": [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)],
+        "front wall": [(x1, y0, z1), (x0, y0, z1), (x0, y1, z1), (x1, y1, z1)],
+        "left wall": [(x0, y0, z1), (x0, y0, z0), (x0, y1, z0), (x0, y1, z1)],
+        "right wall": [(x1, y0, z0), (x1, y0, z1), (x1, y1, z1), (x1, y1, z0)],
+    }
+
+
 def box(low, high):
     (x0, y0, z0), (x1, y1, z1) = low, high
     return joined(

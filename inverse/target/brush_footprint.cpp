@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 using renderer::Box3f;
 using renderer::Triangle;
 
-constexpr float kFacingCosine = 0.2F;   // touched: cosine between normal and side > this
+constexpr float kFacingCosine = 0.2F;   // between normal and side; `facing` is 1 from here on, and 0 at a cosine of 0
+constexpr float kLeastFacing = 1e-3F;   // touched: facing > this
 constexpr double kSameDistance = 1e-4;  // on both surfaces: distances differ by ≤ this × radius
 constexpr double kFarAway = std::numeric_limits<double>::infinity();
 
@@ -95,8 +96,12 @@ Sides sides_at(const Receivers& receivers, const BoxTree& surface, Vec3f point, 
   return sides;
 }
 
-bool faces(Vec3f normal, const Sides& sides) {
-  return std::any_of(sides.begin(), sides.end(), [&](Vec3f side) { return dot(normal, side) > kFacingCosine; });
+// A step at some cosine would show the receivers' triangles in the picture.
+float facing(Vec3f normal, const Sides& sides) {
+  float cosine = 0;
+  for (const Vec3f side : sides) cosine = std::max(cosine, dot(normal, side));
+  const float t = std::min(cosine / kFacingCosine, 1.0F);
+  return t * t * (3 - 2 * t);
 }
 
 struct Path {
@@ -162,8 +167,8 @@ std::vector<TouchedReceiver> brush_footprint(const Receivers& receivers, const B
     const PathPoint closest = closest_on_path(path, receivers.positions[i], stroke.radius);
     if (!(closest.distance <= stroke.radius)) continue;
     const std::size_t end = closest.nearer_end ? path.end_of(closest.segment) : closest.segment;
-    if (stroke.facing && !faces(receivers.normals[i], sides[end])) continue;
-    touched.push_back({i, float(closest.distance)});
+    const float faced = stroke.facing ? facing(receivers.normals[i], sides[end]) : 1;
+    if (faced > kLeastFacing) touched.push_back({i, float(closest.distance), faced});
   }
   return touched;
 }

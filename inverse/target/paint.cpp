@@ -52,11 +52,11 @@ Vec3f apply(const Change& change, Vec3f value) {
 }
 
 void apply_to_receiver(Target& target, const Stroke& stroke, const TouchedReceiver& touched) {
-  const float strength = stroke.opacity * falloff(stroke.falloff, touched.distance / stroke.radius);
+  const float strength = stroke.opacity * touched.facing * falloff(stroke.falloff, touched.distance / stroke.radius);
   const Change change = brush_change(stroke, strength);
   const std::size_t i = touched.receiver;
   target.illumination[i] = apply(change, target.illumination[i]);
-  target.weight[i] = stroke.weight;
+  target.weight[i] = std::lerp(target.weight[i], stroke.weight, touched.facing);
   // Paint is free of noise: of a traced value's error only what the gain leaves stays.
   if (!target.standard_error.empty()) target.standard_error[i] *= length(change.gain) / std::sqrt(3.0F);
 }

@@ -19,8 +19,8 @@ struct Stroke {
   BrushFalloff falloff = BrushFalloff::kSmooth;
   float opacity = 1;
   std::vector<Vec3f> path;  // metres, on the surface
-  bool facing = true;       // touch only receivers that face the side the stroke was painted from
-  float weight = 1;         // given to the receivers touched
+  bool facing = true;       // touch only receivers that face the side the stroke was painted from, fading
+  float weight = 1;         // given to the receivers touched, as far as they face it
 };
 
 enum class StrokeBase : std::uint8_t { kBlack, kCurrent };

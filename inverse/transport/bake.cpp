@@ -1,23 +1,20 @@
 #include "inverse/transport/bake.h"
 
-#include <chrono>
 #include <numeric>
 
 #include "inverse/transport/gather_operator.h"
+#include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
 namespace {
 
 using renderer::RayTracer;
+using renderer::seconds_since;
 using renderer::SurfaceSample;
 
 // Entries on which the indirect part is held against the path tracer.
 constexpr std::size_t kCheckedLights = 6, kCheckedReceivers = 256;
 constexpr int kCheckSamples = 256;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::size_t bake_visibility(const RayTracer& tracer, const Receivers& receivers, TransportCache& cache,
                             const renderer::Control& control) {
@@ -30,8 +27,7 @@ std::size_t bake_visibility(const RayTracer& tracer, const Receivers& receivers,
       const SurfaceSample& at = receivers.samples[i];
       if (dot(position - at.position, at.normal) <= 0) continue;
       const Vec3f from = renderer::offset_point(at.position, at.normal);
-      // All rays of a light start in one point: the order Embree likes.
-      visibility[i] = tracer.occluded_between(position, from, std::uint32_t(light * 0x9e3779b9U + i)) ? 0 : 1;
+      visibility[i] = tracer.occluded_between(from, position, std::uint32_t(light * 0x9e3779b9U + i)) ? 0 : 1;
       ++rays[light];
     }
   });

@@ -39,7 +39,8 @@ std::optional<GatherHit> gather(const RayTracer& tracer, const SurfaceSample& fr
   const auto hit = tracer.intersect(ray);
   if (!hit) return std::nullopt;
   const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
-  return GatherHit{{point.position, point.shading_normal}, hemispherical_albedo(point)};
+  const Vec3f in_front = renderer::offset_point(point.position, point.geometric_normal, point.rounding);
+  return GatherHit{{in_front, point.shading_normal}, hemispherical_albedo(point)};
 }
 
 std::vector<SurfaceSample> trace_gather_path(const RayTracer& tracer, SurfaceSample from, Sampler sampler) {
@@ -174,7 +175,7 @@ void add(std::span<LightBlock> sum, std::span<const LightBlock> term) {
 float direct_at(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
   const float value = unoccluded_illumination(at, light);
   if (value <= 0) return 0;
-  return tracer.occluded_between(light, renderer::offset_point(at.position, at.normal), seed) ? 0 : value;
+  return tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed) ? 0 : value;
 }
 
 float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i, Vec3f light,

@@ -92,8 +92,8 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Visibili
     const SurfaceSample& at = receivers_[i];
     if (dot(light - at.position, at.normal) <= 0) continue;
     if (source == VisibilitySource::kTraced) {
-      const Vec3f to = renderer::offset_point(at.position, at.normal);
-      visible[i] = tracer_.occluded_between(light, to, std::uint32_t(i)) ? 0 : 1;
+      const Vec3f from = renderer::offset_point(at.position, at.normal);
+      visible[i] = tracer_.occluded_between(from, light, std::uint32_t(i)) ? 0 : 1;
       continue;
     }
     // Nodes behind the receiver know nothing of what stands in front of it.

@@ -15,8 +15,10 @@ namespace {
 using renderer::Box3f;
 using renderer::Triangle;
 
-constexpr std::size_t kDefaultCount = 30000;  // receivers aimed at by default …
-constexpr double kDefaultGrowth = 1.3;        // … or this many times the scene's own vertices, where that is more
+constexpr double kDefaultCount = 30000;  // receivers aimed at by default …
+constexpr double kDefaultGrowth = 1.3;   // … or this many times the scene's own vertices, where that is more
+constexpr double kLeastOfWanted = 2.0 / 3, kMostOfWanted = 5.0 / 3;
+constexpr float kShortestEdge = 1e-5F;  // of the scene's longest one
 constexpr double kMostReceivers = 3e7;
 constexpr float kNudge = 2e-5F;        // of the receivers' diagonal
 constexpr float kLongestNudge = 0.1F;  // of the way to the centroid of the face
@@ -52,27 +54,47 @@ std::vector<SurfaceMesh> split_all(std::vector<SurfaceMesh> meshes, float max_ed
   return meshes;
 }
 
-// The edge length that gives about as many receivers as wanted, by bisection of its logarithm.
-float default_max_edge(const std::vector<SurfaceMesh>& meshes, float diagonal) {
-  const std::size_t wanted = std::max(kDefaultCount, std::size_t(kDefaultGrowth * double(vertex_count(meshes))));
-  float shortest = 1e-4F * diagonal, longest = diagonal;
-  for (int step = 0; step < 10; ++step) {
-    const float middle = std::sqrt(shortest * longest);
-    double estimate = 0;
-    for (const SurfaceMesh& mesh : meshes) estimate += estimated_vertices_after_split(mesh, middle);
-    (estimate > double(wanted) ? shortest : longest) = middle;
+double count_after_split(const std::vector<SurfaceMesh>& meshes, float max_edge, double limit) {
+  double count = 0;
+  for (const SurfaceMesh& mesh : meshes) {
+    count += vertices_after_split(mesh, max_edge, limit - count);
+    if (count > limit) break;
+  }
+  return count;
+}
+
+float longest_edge(const std::vector<SurfaceMesh>& meshes) {
+  float longest = 0;
+  for (const SurfaceMesh& mesh : meshes) {
+    for (const Triangle& t : mesh.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        longest = std::max(longest, length(mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]));
+      }
+    }
   }
   return longest;
 }
 
-void check_count(const renderer::Scene& scene, const std::vector<SurfaceMesh>& meshes, float max_edge) {
-  double estimate = 0;
-  for (const SurfaceMesh& mesh : meshes) estimate += estimated_vertices_after_split(mesh, max_edge);
-  if (estimate > kMostReceivers) {
-    throw renderer::Error({scene.path, "receivers",
-                           fmt::format("edges of at most {} m make about {:.3g} receivers", max_edge, estimate),
-                           fmt::format("at most {:.3g}: a longer --max-edge", kMostReceivers)});
+// The edge length that gives about as many receivers as wanted, by bisection of its logarithm. Where edges are alike,
+// one step of their length doubles or quadruples the receivers: then rather too many than too few.
+float default_max_edge(const std::vector<SurfaceMesh>& meshes) {
+  const double wanted = std::max(kDefaultCount, kDefaultGrowth * double(vertex_count(meshes)));
+  const double least = kLeastOfWanted * wanted, most = kMostOfWanted * wanted;
+  float longest = longest_edge(meshes), shortest = kShortestEdge * longest;
+  for (int step = 0; step < 12; ++step) {
+    const float middle = std::sqrt(shortest) * std::sqrt(longest);
+    (count_after_split(meshes, middle, wanted) >= wanted ? shortest : longest) = middle;
   }
+  const double above = count_after_split(meshes, shortest, most), below = count_after_split(meshes, longest, wanted);
+  const bool below_is_nearer = wanted / below < above / wanted;
+  return below >= least && (below_is_nearer || above > most) ? longest : shortest;
+}
+
+void check_count(const renderer::Scene& scene, const std::vector<SurfaceMesh>& meshes, float max_edge) {
+  if (count_after_split(meshes, max_edge, kMostReceivers) <= kMostReceivers) return;
+  throw renderer::Error({scene.path, "receivers",
+                         fmt::format("edges of at most {} m make more than {:.3g} receivers", max_edge, kMostReceivers),
+                         "a longer --max-edge"});
 }
 
 std::vector<std::uint32_t> largest_face_per_vertex(const Receivers& r) {
@@ -88,20 +110,45 @@ std::vector<std::uint32_t> largest_face_per_vertex(const Receivers& r) {
   return face;
 }
 
-void place_samples(Receivers& r) {
+Box3f bounds(std::span<const Vec3f> positions) {
   Box3f box;
-  for (const Vec3f& p : r.positions) box.extend(p);
+  for (const Vec3f& p : positions) box.extend(p);
+  return box;
+}
+
+// Any triangle of the scene that a part was split from lies within the part's bounds.
+float part_rounding(const Receivers& r, const Receivers::Part& part) {
+  const Box3f box = bounds(std::span(r.positions).subspan(part.first_receiver, part.receiver_count));
+  return renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
+}
+
+// Zero for a triangle without area.
+Vec3f face_normal(const Receivers& r, const Triangle& t) {
+  const Vec3f area = cross(r.positions[t[1]] - r.positions[t[0]], r.positions[t[2]] - r.positions[t[0]]);
+  return length_squared(area) > 0 ? normalize(area) : Vec3f{};
+}
+
+// Off the edges of the vertex's largest face, and off the face to the side of the vertex's normal.
+Vec3f sample_position(const Receivers& r, std::size_t i, const Triangle& face, float nudge, float rounding) {
+  const Vec3f vertex = r.positions[i];
+  const Vec3f inward = (r.positions[face[0]] + r.positions[face[1]] + r.positions[face[2]]) / 3 - vertex;
+  const float distance = length(inward);
+  const Vec3f inside = distance > 0 ? vertex + std::min(kLongestNudge, nudge / distance) * inward : vertex;
+  const Vec3f normal = face_normal(r, face);
+  return inside + std::copysign(rounding, dot(normal, r.normals[i])) * normal;
+}
+
+void place_samples(Receivers& r) {
+  const float nudge = kNudge * bounds(r.positions).diagonal();
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
   r.samples.resize(r.size());
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    Vec3f position = r.positions[i];
-    if (face[i] != ~0U) {
-      const auto& [a, b, c] = r.triangles[face[i]];
-      const Vec3f inward = (r.positions[a] + r.positions[b] + r.positions[c]) / 3 - position;
-      const float distance = length(inward);
-      if (distance > 0) position += std::min(kLongestNudge, kNudge * box.diagonal() / distance) * inward;
+  for (const Receivers::Part& part : r.parts) {
+    const float rounding = part_rounding(r, part);
+    for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
+      const Vec3f position =
+          face[i] == ~0U ? r.positions[i] : sample_position(r, i, r.triangles[face[i]], nudge, rounding);
+      r.samples[i] = {position, r.normals[i]};
     }
-    r.samples[i] = {position, r.normals[i]};
   }
 }
 
@@ -120,10 +167,8 @@ void repair_normals(Receivers& r) {
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (length_squared(r.normals[i]) > 0.25F) continue;
     Vec3f n{0, 1, 0};
-    if (face[i] != ~0U) {
-      const auto& [a, b, c] = r.triangles[face[i]];
-      const Vec3f area = cross(r.positions[b] - r.positions[a], r.positions[c] - r.positions[a]);
-      if (length_squared(area) > 0) n = normalize(area);
+    if (face[i] != ~0U && length_squared(face_normal(r, r.triangles[face[i]])) > 0) {
+      n = face_normal(r, r.triangles[face[i]]);
     }
     r.normals[i] = n;
   }
@@ -137,8 +182,7 @@ Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& op
   if (vertex_count(meshes) == 0) {
     throw renderer::Error({scene.path, "", "the scene has no triangles", "surfaces that light can fall on"});
   }
-  const float max_edge =
-      options.max_edge > 0 ? options.max_edge : default_max_edge(meshes, renderer::bounds(scene).diagonal());
+  const float max_edge = options.max_edge > 0 ? options.max_edge : default_max_edge(meshes);
   check_count(scene, meshes, max_edge);
   meshes = split_all(std::move(meshes), max_edge);
   Receivers receivers;

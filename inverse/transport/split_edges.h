@@ -16,7 +16,8 @@ struct SurfaceMesh {
 // split for both, so that the mesh stays whole. Old vertices keep their numbers; new normals are interpolated.
 void split_long_edges(SurfaceMesh& mesh, float max_edge);
 
-// About how many vertices split_long_edges would leave.
-double estimated_vertices_after_split(const SurfaceMesh& mesh, float max_edge);
+// How many vertices split_long_edges would leave, up to float rounding, without making them. Counting ends soon after
+// `limit` is passed.
+double vertices_after_split(const SurfaceMesh& mesh, float max_edge, double limit);
 
 }  // namespace chiaro::inverse

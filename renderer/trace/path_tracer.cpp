@@ -31,7 +31,8 @@ const Scene& scene_without_emission() {
 // A surface that light is gathered at: either a material's, or a white receiver of which illumination is asked.
 struct PathTracer::Vertex {
   Vec3f position;
-  Vec3f normal;  // geometric; rays start on its side
+  Vec3f normal;    // geometric; rays start on its side
+  float rounding;  // of position, as SurfacePoint's
   Vec3f to_viewer;
   const Bsdf* bsdf;  // nullptr: a receiver, whose response to irradiance is 1/π
   int index;
@@ -46,7 +47,11 @@ struct PathTracer::Vertex {
     return bsdf != nullptr ? bsdf->pdf(to_viewer, to_light) : std::max(0.0F, dot(normal, to_light)) * kInvPi;
   }
   Vec3f pick_normal() const { return bsdf != nullptr ? bsdf->normal() : normal; }
-  Vec3f ray_origin() const { return offset_point(position, normal); }
+  Vec3f ray_origin() const { return offset_point(position, normal, rounding); }
+  // Where a ray from so many metres away ends before it meets the vertex's own surface.
+  Vec3f ray_end(float distance) const {
+    return offset_point(position, normal, std::max(rounding, surface_rounding(distance, 0)));
+  }
 };
 
 PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission)
@@ -132,14 +137,15 @@ void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& s
   const Vec3f end = from.origin + hit->distance * from.direction;
   const float r2 = length_squared(end - v.position);
   if (!(r2 > 0)) return;
-  const Vec3f to_end = (end - v.position) / std::sqrt(r2);
+  const float distance = std::sqrt(r2);
+  const Vec3f to_end = (end - v.position) / distance;
   const Vec3f scattered = throughput * v.eval(to_end);
   if (!(max_component(scattered) > 0)) return;
 
   const Ray connection{v.position, to_end, 0, kInfinity, 0};
   const SurfacePoint point = make_surface_point(tracer_.scene(), connection, *hit);
   const Bsdf bsdf(point);
-  const Vertex y{point.position, point.geometric_normal, -to_end, &bsdf, v.index + 1};
+  const Vertex y{point.position, point.geometric_normal, point.rounding, -to_end, &bsdf, v.index + 1};
   const float cosine_light = std::abs(dot(y.normal, from.direction)), cosine_vertex = dot(y.normal, -to_end);
   const Vec3f reflected = y.eval(-from.direction) * from.intensity;
   if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
@@ -151,7 +157,7 @@ void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& s
   const float weight = balance_heuristic(subpath_pdf, scatter_pdf);
   const Vec3f value = (weight * cosine_vertex / (r2 * d2 * subpath_pdf)) * scattered * reflected;
   if (!(max_component(value) > 0) || !is_finite(value)) return;
-  if (tracer_.occluded_between(v.ray_origin(), y.ray_origin(), sampler.next_bits())) return;
+  if (tracer_.occluded_between(v.ray_origin(), y.ray_end(distance), sampler.next_bits())) return;
   light.add(v.index + 1, from.light, value);
 }
 
@@ -196,9 +202,8 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
     if (index > bounces_) return;
     const Bsdf bsdf(point);
     const float cosine = dot(point.geometric_normal, -direction);
-    const Vertex vertex{point.position, point.geometric_normal,
-                        -direction,     &bsdf,
-                        index,          pdf * cosine / (hit->distance * hit->distance)};
+    const float area_pdf = pdf * cosine / (hit->distance * hit->distance);
+    const Vertex vertex{point.position, point.geometric_normal, point.rounding, -direction, &bsdf, index, area_pdf};
     add_lights(vertex, throughput, sampler, light);
     if (index == bounces_ && emitters_.empty()) return;
     const Vec2f u = sampler.next_2d();
@@ -219,7 +224,7 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
 void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int index, Vec3f throughput,
                                Sampler& sampler, PathLight& light) const {
   const Bsdf bsdf(point);
-  const Vertex vertex{point.position, point.geometric_normal, to_viewer, &bsdf, index};
+  const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index};
   add_lights(vertex, throughput, sampler, light);
   if (index == bounces_ && emitters_.empty()) return;
   const Vec2f u = sampler.next_2d();
@@ -229,19 +234,32 @@ void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int i
 }
 
 void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const {
-  add_all_punctual({position, normal, normal, nullptr, 0}, {1, 1, 1}, sampler, light);
+  add_all_punctual({position, normal, 0, normal, nullptr, 0}, {1, 1, 1}, sampler, light);
 }
 
 void PathTracer::add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler,
                                   PathLight& light) const {
-  const Vertex vertex{position, normal, normal, nullptr, 0};
   if (with_punctual) add_punctual_illumination(position, normal, sampler, light);
+  add_indirect_illumination({position, normal, 0, normal, nullptr, 0}, sampler, light);
+}
+
+void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const {
+  // Rays start along the shading normal, which leans: as far off the surface as they would along the geometric one.
+  constexpr float kLeastCosine = 0.1F;
+  const Vec3f normal = point.shading_normal;
+  const float rounding = point.rounding / std::max(kLeastCosine, dot(normal, point.geometric_normal));
+  const Vertex vertex{point.position, normal, rounding, normal, nullptr, 0};
+  add_all_punctual(vertex, {1, 1, 1}, sampler, light);
+  add_indirect_illumination(vertex, sampler, light);
+}
+
+void PathTracer::add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const {
   add_indirect_samples(vertex, {1, 1, 1}, sampler, light);
   if (bounces_ == 0 && emitters_.empty()) return;
   const Vec3f local = sample_cosine_hemisphere(sampler.next_2d());
   if (!(local.z > 0)) return;
   // Illumination is the mean of incident radiance over cosine-weighted directions.
-  trace(vertex.ray_origin(), normalize(Frame3f(normal).world_from_local(local)), local.z * kInvPi, 1, {1, 1, 1},
+  trace(vertex.ray_origin(), normalize(Frame3f(vertex.normal).world_from_local(local)), local.z * kInvPi, 1, {1, 1, 1},
         sampler, light);
 }
 

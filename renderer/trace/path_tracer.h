@@ -42,6 +42,8 @@ class PathTracer {
   // Illumination (irradiance / π) of a surface point by one path. `with_punctual`: its direct light from punctual
   // lights too, which needs no more than one sample where no surface is alpha-blended.
   void add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler, PathLight& light) const;
+  // The same of a point that a ray has met, by its shading normal, with punctual lights.
+  void add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const;
   void add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const;
 
   bool has_emission() const { return !emitters_.empty(); }
@@ -50,6 +52,7 @@ class PathTracer {
 
  private:
   struct Vertex;
+  void add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const;
   void trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
              PathLight& light) const;
   void add_lights(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;

@@ -21,6 +21,7 @@ struct Hit {
   float u = 0, v = 0;  // barycentric: point = (1 − u − v) p0 + u p1 + v p2
   std::uint32_t instance = 0, triangle = 0;
   Vec3f geometric_normal;  // unit, world, on the side of the triangle's winding; not flipped towards the ray
+  bool instanced = false;  // met in object space, and not among the world's own triangles
 };
 
 class RayTracer {
@@ -36,7 +37,8 @@ class RayTracer {
 
   std::optional<Hit> intersect(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
-  // Whether anything stands between two points, both already moved off their surfaces.
+  // Whether anything stands between two points, both already moved off their surfaces. Where one of them is a light,
+  // let it be `to`: rays miss the surface that they start from more surely than one that they come to from afar.
   bool occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const;
 
  private:
@@ -46,7 +48,12 @@ class RayTracer {
   std::unique_ptr<Embree> embree_;
 };
 
-// `point` moved off its surface to the side of `normal`, by a distance that float rounding at its magnitude calls for.
-Vec3f offset_point(Vec3f point, Vec3f normal);
+// How far, metres, float rounding may take a point of a triangle off the plane that rays meet: by the largest
+// coordinate of the corners and the radius of the circle through them.
+float surface_rounding(float largest_coordinate, float radius);
+
+// `point` moved off its surface to the side of `normal`, by `rounding` metres, and no less than rounding at the point's
+// own magnitude calls for.
+Vec3f offset_point(Vec3f point, Vec3f normal, float rounding = 0);
 
 }  // namespace chiaro::renderer

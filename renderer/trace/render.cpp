@@ -1,8 +1,7 @@
 #include "renderer/trace/render.h"
 
-#include <chrono>
-
 #include "renderer/core/error.h"
+#include "renderer/core/seconds_since.h"
 #include "renderer/trace/camera_rays.h"
 #include "renderer/trace/film.h"
 #include "renderer/trace/path_tracer.h"
@@ -45,14 +44,10 @@ PixelSample sample_pixel(const FrameTask& task, int x, int y, std::uint32_t inde
   sample.beauty = sample.light.direct + sample.light.indirect;
   if (film.wants_illumination()) {
     PathLight light;
-    task.paths.add_illumination(point.position, point.shading_normal, true, sampler, light);
+    task.paths.add_illumination(point, sampler, light);
     sample.illumination = light.direct + light.indirect;
   }
   return sample;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 // Samples first … last−1 of every pixel, a row at a time.

@@ -93,6 +93,40 @@ Vec3f shading_normal(const Locus& at, const Material& material, const Mat4f& wor
   return length_squared(n) > 0 ? n : hit.geometric_normal;
 }
 
+using Corners = std::array<Vec3f, 3>;
+
+// In world space; to the bit as the ray tracer has them where it draws the mesh once.
+Corners world_corners(const Locus& at, const Mat4f& world_from_object) {
+  Corners world;
+  for (int k = 0; k < 3; ++k) world[k] = transform_point(world_from_object, at.mesh.positions[at.triangle[k]]);
+  return world;
+}
+
+float largest_coordinate(const Corners& corners) {
+  return max_component(max(max(abs(corners[0]), abs(corners[1])), abs(corners[2])));
+}
+
+// Of the sums that make a corner's world coordinates, and a ray's object coordinates: the largest term may be far
+// larger than the sum.
+float largest_term(const Locus& at, const Mat4f& m) {
+  float largest = 0;
+  for (const std::uint32_t v : at.triangle) {
+    const Vec3f p = abs(at.mesh.positions[v]);
+    largest = std::max(largest, max_component(p.x * abs(m.column(0)) + p.y * abs(m.column(1)) + p.z * abs(m.column(2)) +
+                                              abs(m.column(3))));
+  }
+  return largest;
+}
+
+// Of the circle through the corners, which is large where they lie almost on a line; then at most kMost edges.
+float circle_radius(const Corners& corners) {
+  constexpr float kMost = 16;
+  const Vec3f ab = corners[1] - corners[0], bc = corners[2] - corners[1], ca = corners[0] - corners[2];
+  const float a = length(bc), b = length(ca), c = length(ab), most = kMost * std::max({a, b, c});
+  const float radius = a * b * c / (2 * length(cross(ab, ca)));
+  return radius < most ? radius : most;
+}
+
 }  // namespace
 
 float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
@@ -114,7 +148,11 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const Material& material = scene.materials[mesh.material];
   const Locus at = locus_at(scene, mesh, hit.triangle, hit.u, hit.v);
   SurfacePoint point;
-  point.position = transform_point(instance.world_from_object, interpolate(mesh.positions, at.triangle, hit.u, hit.v));
+  const Corners corners = world_corners(at, instance.world_from_object);
+  point.position = corners[0] + hit.u * (corners[1] - corners[0]) + hit.v * (corners[2] - corners[0]);
+  point.rounding =
+      surface_rounding(hit.instanced ? largest_term(at, instance.world_from_object) : largest_coordinate(corners),
+                       circle_radius(corners));
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;
   const float side = point.front ? 1.0F : -1.0F;
   point.geometric_normal = side * hit.geometric_normal;

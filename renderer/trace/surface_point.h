@@ -7,6 +7,7 @@ namespace chiaro::renderer {
 
 struct SurfacePoint {
   Vec3f position;
+  float rounding = 0;      // metres; how far off the surface floats may have put it: for offset_point
   Vec3f geometric_normal;  // unit, on the side that the ray came from
   Vec3f shading_normal;    // unit, never facing away from the ray
   Vec3f base_color;        // linear

@@ -11,7 +11,8 @@
 
 namespace chiaro::renderer {
 
-// A point just on its surface, seen from the side of the normal.
+// A point on its surface, seen from the side of the normal. Better just in front of it, by what rounding may take it
+// off the surface that rays meet: who made it knows the surface's size.
 struct SurfaceSample {
   Vec3f position;
   Vec3f normal;  // unit; shading normal: the cosine is taken with it

@@ -1,11 +1,10 @@
 #include "cli/output_paths.h"
 
-#include <fstream>
-
 #include <gtest/gtest.h>
 
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::cli {
 namespace {
@@ -14,13 +13,7 @@ namespace fs = std::filesystem;
 
 class CliOutputPaths : public testing::Test {
  protected:
-  CliOutputPaths() : folder_(fs::path(testing::TempDir()) / "chiaro_output_paths") {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~CliOutputPaths() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(CliOutputPaths, ExtensionsDoNotMindCase) {
@@ -31,13 +24,13 @@ TEST_F(CliOutputPaths, ExtensionsDoNotMindCase) {
 
 TEST_F(CliOutputPaths, AskingWhetherAFileCanBeMadeLeavesNothing) {
   require_writable(folder_ / "new.exr");
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(CliOutputPaths, WhatCannotBeMadeIsAnError) {
   EXPECT_THROW(require_writable(folder_ / "missing" / "new.exr"), renderer::Error);
-  EXPECT_THROW(require_writable(folder_), renderer::Error);
-  std::ofstream(folder_ / "file") << "text";
+  EXPECT_THROW(require_writable(folder_.path()), renderer::Error);
+  folder_.write("file", "text");
   EXPECT_THROW(require_writable(folder_ / "file" / "new.exr"), renderer::Error);
   EXPECT_THROW(make_folder(folder_ / "file"), renderer::Error);
   EXPECT_THROW(make_folder(folder_ / "file" / "below"), renderer::Error);

@@ -6,28 +6,18 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/cli/run_with.h"
+#include "tests/support/test_names.h"
+
 namespace chiaro::cli {
 namespace {
 
-struct Outcome {
-  int exit_code = 0;
-  std::string standard_output, standard_error;
-};
-
-Outcome run_with(std::vector<const char*> arguments) {
-  arguments.insert(arguments.begin(), "chiaro");
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  Outcome outcome;
-  outcome.exit_code = run_program(int(arguments.size()), arguments.data());
-  outcome.standard_output = testing::internal::GetCapturedStdout();
-  outcome.standard_error = testing::internal::GetCapturedStderr();
-  return outcome;
-}
+using tests::Outcome;
+using tests::run_with;
 
 auto line_count(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-class CliWrongUsage : public testing::TestWithParam<std::vector<const char*>> {};
+class CliWrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(CliWrongUsage, ExitsWithTwoAndOneOrTwoLines) {
   const Outcome outcome = run_with(GetParam());
@@ -37,7 +27,14 @@ TEST_P(CliWrongUsage, ExitsWithTwoAndOneOrTwoLines) {
   EXPECT_LE(line_count(outcome.standard_error), 2);
 }
 
-using Arguments = std::vector<const char*>;
+using Arguments = std::vector<std::string>;
+
+std::string name_of(const testing::TestParamInfo<Arguments>& info) {
+  std::string words;
+  for (const std::string& word : info.param) words += " " + (word.empty() ? "empty" : word);
+  return test::test_name(words);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     CommandLines, CliWrongUsage,
     testing::Values(Arguments{}, Arguments{"paintt"}, Arguments{"inspect"}, Arguments{"inspect", "a.glb", "b.glb"},
@@ -65,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
                               "2,2,2"},
                     Arguments{"paint", "a.glb", "--strokes", "s.json", "-o", "t.glb", "--unpainted-weight", "-1"},
                     Arguments{"compare", "a.exr", "b.exr", "--fail-above", "-1"},
-                    Arguments{"compare", "a.glb", "b.glb", "-o", "d.png"}));
+                    Arguments{"compare", "a.glb", "b.glb", "-o", "d.png"}),
+    name_of);
 
 TEST(CliProgram, AMissingFileIsOneLineOfError) {
   const Outcome outcome = run_with({"inspect", "no/such/file.glb"});

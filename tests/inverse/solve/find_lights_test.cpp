@@ -181,7 +181,8 @@ TEST_P(CountedLights, AreCountedAndFound) {
   EXPECT_FALSE(result.out_of_time);
 }
 
-INSTANTIATE_TEST_SUITE_P(OneToThree, CountedLights, ::testing::Values(1U, 2U, 3U));
+INSTANTIATE_TEST_SUITE_P(OneToThree, CountedLights, ::testing::Values(1U, 2U, 3U),
+                         [](const auto& count) { return std::to_string(count.param) + "Lights"; });
 
 TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   const DirectProblem problem(known_lights(3));

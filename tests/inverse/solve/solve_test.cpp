@@ -6,7 +6,7 @@
 
 #include "renderer/core/error.h"
 #include "tests/inverse/solve/painted_corner.h"
-#include "tests/inverse/target/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -96,7 +96,7 @@ TEST(Solve, FindsLightsThroughAllBouncesWithBothMethods) {
 TEST(Solve, SaysWhatItFound) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(3), 0);
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   SolveOptions options = quick();
   options.report_folder = folder.path() / "report";
   const SolveResult result = solve(problem_of(corner, target, 0), options);
@@ -203,7 +203,7 @@ TEST(Solve, ACacheFileGivesWhatABakeGives) {
   const PaintedCorner corner;
   const LightEstimates known = known_lights(1);
   const Target target = corner.target(known, 0);
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   SolveProblem problem = problem_of(corner, target, 0);
   problem.cache_file = folder.path() / "cache.exr";
   const LightGrid grid = make_light_grid(corner.tracer(), problem.grid);
@@ -216,7 +216,7 @@ TEST(Solve, ACacheFileGivesWhatABakeGives) {
 TEST(Solve, StaleCachesAreRefusedWithTheReason) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(1), 0);
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   SolveProblem problem = problem_of(corner, target, 0);
   problem.cache_file = folder.path() / "cache.exr";
   const LightGrid grid = make_light_grid(corner.tracer(), {.counts = {3, 3, 3}, .region = {}});

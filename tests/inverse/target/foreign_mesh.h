@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/inverse/target/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse::tests {
 
@@ -19,7 +19,8 @@ struct ForeignNode {
 };
 
 // A .gltf beside its .bin; every node is the triangle (0,0,0) (0,0,1) (1,0,0), moved up by one per node.
-inline std::filesystem::path write_foreign_mesh(const TemporaryFolder& folder, const std::vector<ForeignNode>& nodes) {
+inline std::filesystem::path write_foreign_mesh(const test::TemporaryFolder& folder,
+                                                const std::vector<ForeignNode>& nodes) {
   using nlohmann::json;
   std::string bytes;
   json gltf = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};

@@ -1,5 +1,6 @@
 #include "inverse/target/paint.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -214,6 +215,32 @@ TEST(PaintFacing, APathOverACornerTakesEachSideWhereItLies) {
   const Counts touched = touched_on_both(make_corner(), 81, {{0.75F, 0, 0.5F}, {0, 0, 0.5F}, {0, 0.75F, 0.5F}}, true);
   EXPECT_EQ(touched.first, touched.second);
   EXPECT_GT(touched.first, 40U);
+}
+
+// The floor, its receivers' normals turned away from those at x = 0 more and more: cosine (8 − x) / 24 at x > 0.
+Receivers make_bent_floor() {
+  Receivers floor = make_floor();
+  for (int x = 1; x <= 8; ++x) {
+    const float cosine = float(8 - x) / 24;
+    for (int z = 0; z <= 8; ++z) floor.normals[floor_receiver(x, z)] = {std::sqrt(1 - cosine * cosine), cosine, 0};
+  }
+  return floor;
+}
+
+TEST(PaintFacing, FadesWhereTheSurfaceTurnsAway) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.radius = 2;
+  stroke.path = {{0, 0, 0.5F}};
+  stroke.weight = 3;
+  const auto painted = paint(make_target(make_bent_floor(), kBase), {StrokeBase::kCurrent, {stroke}}, {0.5F}).target;
+  expect_near(painted.illumination[floor_receiver(0, 4)], kBase + Vec3f{1, 2, 3});
+  for (int x = 1; x <= 8; ++x) {
+    SCOPED_TRACE(x);
+    const float t = std::min(1.0F, float(8 - x) / 24 / 0.2F), facing = t * t * (3 - 2 * t);
+    expect_near(painted.illumination[floor_receiver(x, 4)], kBase + facing * Vec3f{1, 2, 3});
+    EXPECT_NEAR(painted.weight[floor_receiver(x, 4)], 0.5F + facing * 2.5F, 1e-5F);
+  }
+  EXPECT_EQ(painted.weight[floor_receiver(8, 4)], 0.5F);
 }
 
 TEST(PaintFacing, PathsFarAwayTouchNothing) {

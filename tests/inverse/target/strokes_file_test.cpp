@@ -2,12 +2,12 @@
 
 #include "inverse/target/paint.h"
 #include "renderer/core/error.h"
-#include "tests/inverse/target/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
 namespace {
 
-using tests::TemporaryFolder;
+using test::TemporaryFolder;
 
 Strokes load_text(const std::string& text) {
   const TemporaryFolder folder;

@@ -8,17 +8,17 @@
 #include "renderer/core/error.h"
 #include "tests/inverse/target/foreign_mesh.h"
 #include "tests/inverse/target/surfaces.h"
-#include "tests/inverse/target/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
 namespace {
 
+using test::TemporaryFolder;
 using tests::ForeignNode;
 using tests::join;
 using tests::make_floor;
 using tests::make_sheet;
 using tests::make_target;
-using tests::TemporaryFolder;
 using tests::write_foreign_mesh;
 
 const std::vector<float> kValues{1, 2, 3, 4, 5, 6, 7, 8, 9};

@@ -1,11 +1,12 @@
 #include "inverse/transport/receivers.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "renderer/core/error.h"
 #include "renderer/io/load_gltf.h"
-#include "tests/inverse/target/temporary_folder.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -49,6 +50,43 @@ TEST(Receivers, AreTwentyToFiftyThousandByDefault) {
     EXPECT_EQ(first, receivers.size());
     EXPECT_EQ(triangle, receivers.triangles.size());
   }
+}
+
+// Scenes so simple that all their edges are split at once.
+std::vector<Scene> simple_scenes() {
+  std::vector<Scene> scenes;
+  const auto add = [&](renderer::Mesh mesh, const std::string& name) {
+    scenes.emplace_back();
+    test::add_mesh(scenes.back(), std::move(mesh), test::lambert({1, 1, 1}), name);
+  };
+  for (const Vec3f size :
+       {Vec3f{1, 1, 1}, Vec3f{2, 2, 2}, Vec3f{6, 3, 6}, Vec3f{4, 3, 5}, Vec3f{10, 2.7F, 3}, Vec3f{0.3F, 0.1F, 50}}) {
+    add(test::room(size), fmt::format("box {} {} {}", size.x, size.y, size.z));
+  }
+  add(test::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), "square");
+  add(test::rectangle({0, 0, 0}, {30, 0, 0}, {0, 0.02F, 0}), "strip");
+  add(test::rectangle({0, 0, 0}, {1, 0, 0}, {1.9F, 0.01F, 0}), "sheared strip");
+  add(test::rectangle({1, 2, 3}, {1, 0, 0}, {0, 1e-4F, 1e-4F}, 7), "needles");
+  return scenes;
+}
+
+TEST(Receivers, AreTwentyToFiftyThousandInTheSimplestScenesToo) {
+  for (const Scene& scene : simple_scenes()) {
+    const std::size_t count = make_receivers(scene, {}).size();
+    EXPECT_GE(count, 20000U) << scene.meshes[0].name;
+    EXPECT_LE(count, 50000U) << scene.meshes[0].name;
+  }
+}
+
+TEST(Receivers, AreTooManyRatherThanTooFewWhereAStepQuadruplesThem) {
+  // 4ⁿ⁺¹ + 2 vertices: 16 386 or 65 538.
+  Scene octahedron;
+  renderer::Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  mesh.normals = mesh.positions;
+  mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}};
+  test::add_mesh(octahedron, mesh, test::lambert({1, 1, 1}), "octahedron");
+  EXPECT_EQ(make_receivers(octahedron, {}).size(), 65538U);
 }
 
 TEST(Receivers, NeverFewerThanTheScenesVerticesAndNoLongEdge) {
@@ -98,7 +136,7 @@ TEST(Receivers, SamplesLieOnTheSurfaceCloseToTheirVertex) {
 TEST(Receivers, RoundTripThroughAMeshFileKeepsTheFingerprint) {
   const Scene scene = test::corner_with_ball();
   const Receivers receivers = make_receivers(scene, {.max_edge = 0.2F});
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   save_vertex_mesh(mesh_from_receivers(receivers), folder.path() / "receivers.glb", 1);
   const Receivers again = receivers_from_mesh(renderer::load_vertex_mesh(folder.path() / "receivers.glb"));
   EXPECT_EQ(fingerprint(again), fingerprint(receivers));
@@ -124,6 +162,25 @@ TEST(Receivers, OfAPlaneUnderALightHaveTheClosedForm) {
     const double expected = 10 * 1.5 / (M_PI * std::pow(double(length(d)), 3));
     EXPECT_NEAR(lit.value[i].x, expected, 1e-3 * expected);
     EXPECT_NEAR(lit.value[i].z, 3 * expected, 3e-3 * expected);
+  }
+}
+
+// A tilted plane through the origin, so many metres across, and a light a tenth of that above it.
+TEST(Receivers, NoneIsHiddenByItsOwnPlaneWhateverItsSize) {
+  for (const float size : {3e-3F, 9e-3F, 3.0F, 9.0F, 30.0F, 3e3F, 3e4F}) {
+    for (const Vec3f tilt : {Vec3f{1, 2, 3}, Vec3f{-3, 1, 0.2F}, Vec3f{0.1F, -1, 0.3F}}) {
+      const renderer::Frame3f frame(normalize(tilt));
+      const Vec3f u = size * frame.tangent, v = size * frame.bitangent;
+      Scene scene;
+      test::add_mesh(scene, test::rectangle(-0.45F * u - 0.55F * v, u, v), test::lambert({1, 1, 1}), "plane");
+      const RayTracer tracer(scene);
+      const Receivers receivers = make_receivers(scene, {.max_edge = size / 50});
+      ASSERT_GT(receivers.size(), 2000U);
+      const renderer::PointLight light{"", 0.1F * size * frame.normal, Vec3f{1, 1, 1} * (size * size)};
+      const auto lit = trace_illumination(tracer, receivers.samples, {light}, {.samples = 1, .bounces = 0});
+      const auto dark = std::count(lit.value.begin(), lit.value.end(), Vec3f{});
+      EXPECT_EQ(dark, 0) << size << " m across, of " << receivers.size();
+    }
   }
 }
 

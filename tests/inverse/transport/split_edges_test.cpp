@@ -1,10 +1,10 @@
 #include "inverse/transport/split_edges.h"
 
 #include <map>
-#include <span>
 
 #include <gtest/gtest.h>
 
+#include "renderer/core/sampler.h"
 #include "tests/support/code_scenes.h"
 
 namespace chiaro::inverse {
@@ -111,18 +111,38 @@ TEST(SplitEdges, BlendsNormalsAndSurvivesOppositeOnes) {
   for (const Vec3f n : mesh.normals) EXPECT_NEAR(length(n), 1, 1e-5F);
 }
 
-TEST(SplitEdges, EstimateTellsTheSize) {
-  // Not of the needle: what is said of shapes that common meshes are made of.
-  const std::vector<SurfaceMesh> all = samples();
-  for (const SurfaceMesh& before : std::span(all).first(3)) {
-    for (const float limit : {0.5F, 0.13F, 0.05F}) {
+// Triangles of all shapes: sheared, obtuse, needles long and short, in a row.
+SurfaceMesh random_triangles() {
+  SurfaceMesh mesh;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    renderer::Sampler s(1, 0, i);
+    const float height = std::exp2(-8 * s.next_1d()), shear = 2 * s.next_1d() - 0.5F, x = 3 * float(i);
+    const auto first = std::uint32_t(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x + shear, height, 0.3F * height}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  mesh.normals.assign(mesh.positions.size(), Vec3f{0, 0, 1});
+  return mesh;
+}
+
+TEST(SplitEdges, CountIsThatOfTheVerticesMade) {
+  std::vector<SurfaceMesh> all = samples();
+  all.push_back(random_triangles());
+  for (const SurfaceMesh& before : all) {
+    for (const float max_edge : {1.7F, 0.5F, 0.13F, 0.05F, 0.03F}) {
       SurfaceMesh after = before;
-      split_long_edges(after, limit);
-      const double ratio = estimated_vertices_after_split(before, limit) / double(after.positions.size());
-      EXPECT_GT(ratio, 0.4) << limit;
-      EXPECT_LT(ratio, 2.5) << limit;
+      split_long_edges(after, max_edge);
+      const auto made = double(after.positions.size());
+      EXPECT_NEAR(vertices_after_split(before, max_edge, 1e9), made, 1e-3 * made) << max_edge;
     }
   }
+}
+
+TEST(SplitEdges, CountingEndsBeyondTheLimit) {
+  // Some 1e15 vertices: never to be counted one by one.
+  for (const SurfaceMesh& mesh : samples()) EXPECT_GT(vertices_after_split(mesh, 1e-7F, 1e6), 1e6);
+  const SurfaceMesh vast = surface(test::rectangle({0, 0, 0}, {3e38F, 0, 0}, {0, 3e38F, 0}));
+  EXPECT_GT(vertices_after_split(vast, 1e-7F, 1e6), 1e6);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/image/image_file.h"
-#include "tests/inverse/target/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -81,7 +81,7 @@ class TransportCacheFile : public ::testing::Test {
     }
   }
 
-  tests::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(TransportCacheFile, KeepsEverythingInItsHeader) {

@@ -2,11 +2,10 @@
 
 #include <fstream>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include "renderer/core/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -15,18 +14,12 @@ namespace fs = std::filesystem;
 
 class AtomicFile : public ::testing::Test {
  protected:
-  AtomicFile() : folder_(fs::path(testing::TempDir()) / ("chiaro_atomic_file_" + std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~AtomicFile() override { fs::remove_all(folder_); }
-
   std::size_t files() const {
-    return std::size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    return std::size_t(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
   }
   fs::path file() const { return folder_ / "frame.exr"; }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFile, WritesAndReadsBytes) {
@@ -42,7 +35,7 @@ TEST_F(AtomicFile, IsWrittenBesideUnderAnotherNameOfTheSameKind) {
   write_file_atomically(file(), "old");
   write_atomically(file(), [&](const fs::path& aside) {
     EXPECT_NE(aside, file());
-    EXPECT_EQ(aside.parent_path(), folder_);
+    EXPECT_EQ(aside.parent_path(), folder_.path());
     EXPECT_EQ(aside.extension(), ".exr");
     std::ofstream(aside) << "new";
     EXPECT_EQ(read_file(file()), "old");
@@ -74,12 +67,12 @@ TEST_F(AtomicFile, FoldersThatAreMissingOrInTheWayAreErrors) {
   bool called = false;
   const auto note = [&](const fs::path&) { called = true; };
   EXPECT_THROW(write_atomically(folder_ / "missing" / "frame.exr", note), Error);
-  EXPECT_THROW(write_atomically(folder_, note), Error);
+  EXPECT_THROW(write_atomically(folder_.path(), note), Error);
   EXPECT_FALSE(called);
 }
 
 TEST_F(AtomicFile, ReadingWhatIsNoFileIsAnErrorThatNamesIt) {
-  for (const fs::path& path : {folder_ / "missing", folder_}) {
+  for (const fs::path& path : {folder_ / "missing", folder_.path()}) {
     try {
       read_file(path);
       FAIL() << path;

@@ -151,7 +151,7 @@ TEST(ColorManagement, TheConfigIsTheExplicitOneElseTheEnvironments) {
   std::filesystem::create_directories(data / "color");
   const auto three = data.write("color/config.ocio", kConfig);
   setenv("OCIO", two.c_str(), 1);
-  setenv("CHIARO_DATA", (data / "").c_str(), 1);
+  setenv("CHIARO_DATA", data.path().c_str(), 1);
   EXPECT_EQ(renderer::find_ocio_config(one), one);
   EXPECT_EQ(renderer::find_ocio_config({}), two);
   unsetenv("OCIO");

@@ -6,6 +6,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "tests/renderer/io/gltf_builder.h"
+#include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
 namespace {
@@ -129,7 +130,7 @@ TEST(PngFile, MoreChannelsThanItHoldsAreRefused) {
   EXPECT_NE(error_of([&] { save("frame.png"); }).find("8 channels"), std::string::npos);
   EXPECT_NE(error_of([&] { save("frame.nothing"); }).find("extension"), std::string::npos);
   EXPECT_NE(error_of([&] { save("no such folder/frame.exr"); }), "");
-  EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 class DamagedImage : public testing::TestWithParam<const char*> {};
@@ -150,12 +151,12 @@ TEST_P(DamagedImage, IsRefusedWhereverItIsCut) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, DamagedImage, testing::Values(".exr", ".png", ".jpg"));
+INSTANTIATE_TEST_SUITE_P(Formats, DamagedImage, testing::Values(".exr", ".png", ".jpg"), test::kByText);
 
 TEST(ImageFile, WhatIsNotAnImageIsRefused) {
   const TemporaryFolder folder;
   EXPECT_NE(error_of([&] { load_image(folder / "not there.exr"); }).find("no such file"), std::string::npos);
-  EXPECT_NE(error_of([&] { load_image(folder / ""); }), "");
+  EXPECT_NE(error_of([&] { load_image(folder.path()); }), "");
   const auto text = folder.write("text.exr", "this is not an image");
   EXPECT_NE(error_of([&] { load_image(text); }), "");
   EXPECT_NE(error_of([&] { renderer::load_image_header(text); }), "");

@@ -6,6 +6,7 @@
 #include "renderer/io/load_gltf.h"
 #include "renderer/io/save_gltf.h"
 #include "tests/renderer/io/gltf_builder.h"
+#include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
 namespace {
@@ -159,7 +160,7 @@ const BadCase kBadCases[] = {
      "lights[0].intensity"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, BadGltf, testing::ValuesIn(kBadCases), [](const auto& bad) { return bad.param.name; });
+INSTANTIATE_TEST_SUITE_P(Table, BadGltf, testing::ValuesIn(kBadCases), test::kByName);
 
 TEST(BadGltfBytes, EveryTruncationIsRefused) {
   const TemporaryFolder folder;

@@ -1,50 +1,20 @@
 #pragma once
 // glTF files made in code, for tests.
 
-#include <atomic>
-#include <cstring>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/io/gltf_container.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chiaro::renderer::tests {
 
 using nlohmann::ordered_json;
-
-// A folder that goes away with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    static std::atomic<int> counter{0};
-    path_ = std::filesystem::temp_directory_path() /
-            ("chiaro_test_" + std::to_string(::getpid()) + "_" + std::to_string(counter++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-    renderer::write_file_atomically(path_ / name, bytes);
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using test::TemporaryFolder;
 
 template <class T>
 std::string bytes_of(const std::vector<T>& values) {

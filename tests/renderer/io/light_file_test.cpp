@@ -4,6 +4,7 @@
 
 #include "renderer/io/save_gltf.h"
 #include "tests/renderer/io/gltf_builder.h"
+#include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
 namespace {
@@ -59,6 +60,7 @@ TEST(LightFile, ScenesAreLightFilesToo) {
 }
 
 struct BadLights {
+  const char* name;
   const char* json;
   const char* expected;
 };
@@ -76,27 +78,33 @@ TEST_P(BadLightFile, IsRefusedNamingTheLightAndTheField) {
 INSTANTIATE_TEST_SUITE_P(
     Table, BadLightFile,
     testing::Values(
-        BadLights{"", "JSON"}, BadLights{"{", "JSON"}, BadLights{"[]", "lights"},
-        BadLights{R"({"lights":3})", "lights"}, BadLights{R"({"lights":[]})", "there are none"},
-        BadLights{R"({"lights":[4]})", "lights[0]"},
-        BadLights{R"({"lights":[{"position":[1,2,3]}]})", "lights[0].intensity: is missing"},
-        BadLights{R"({"lights":[{"intensity":[1,2,3]}]})", "lights[0].position: is missing"},
-        BadLights{R"({"lights":[{"position":[1,2],"intensity":[1,1,1]}]})", "lights[0].position"},
-        BadLights{R"({"lights":[{"position":[1,2,"3"],"intensity":[1,1,1]}]})", "lights[0].position"},
-        BadLights{R"({"lights":[{"position":[1,2,1e300],"intensity":[1,1,1]}]})", "position: is not finite"},
-        BadLights{R"({"lights":[{"position":[1,2,1e999],"intensity":[1,1,1]}]})", "out of range"},
-        BadLights{R"({"lights":[{"position":[1,2,3],"intensity":[1,-1,1]}]})", "lights[0].intensity: is negative"},
-        BadLights{R"({"lights":[{"position":[1,2,3],"intensity":5}]})", "lights[0].intensity"},
-        BadLights{R"({"lights":[{"type":"lamp"}]})", "lights[0].type: is \"lamp\""},
-        BadLights{R"({"lights":[{"type":7}]})", "lights[0].type"},
-        BadLights{R"({"lights":[{"type":"directional","direction":[0,0,0],"intensity":[1,1,1]}]})",
+        BadLights{"Empty", "", "JSON"}, BadLights{"HalfAnObject", "{", "JSON"}, BadLights{"AList", "[]", "lights"},
+        BadLights{"LightsAreANumber", R"({"lights":3})", "lights"},
+        BadLights{"NoLights", R"({"lights":[]})", "there are none"},
+        BadLights{"ALightIsANumber", R"({"lights":[4]})", "lights[0]"},
+        BadLights{"NoIntensity", R"({"lights":[{"position":[1,2,3]}]})", "lights[0].intensity: is missing"},
+        BadLights{"NoPosition", R"({"lights":[{"intensity":[1,2,3]}]})", "lights[0].position: is missing"},
+        BadLights{"TwoCoordinates", R"({"lights":[{"position":[1,2],"intensity":[1,1,1]}]})", "lights[0].position"},
+        BadLights{"ACoordinateIsText", R"({"lights":[{"position":[1,2,"3"],"intensity":[1,1,1]}]})",
+                  "lights[0].position"},
+        BadLights{"InfiniteAsFloat", R"({"lights":[{"position":[1,2,1e300],"intensity":[1,1,1]}]})",
+                  "position: is not finite"},
+        BadLights{"InfiniteAsDouble", R"({"lights":[{"position":[1,2,1e999],"intensity":[1,1,1]}]})", "out of range"},
+        BadLights{"NegativeIntensity", R"({"lights":[{"position":[1,2,3],"intensity":[1,-1,1]}]})",
+                  "lights[0].intensity: is negative"},
+        BadLights{"IntensityIsANumber", R"({"lights":[{"position":[1,2,3],"intensity":5}]})", "lights[0].intensity"},
+        BadLights{"UnknownType", R"({"lights":[{"type":"lamp"}]})", "lights[0].type: is \"lamp\""},
+        BadLights{"TypeIsANumber", R"({"lights":[{"type":7}]})", "lights[0].type"},
+        BadLights{"NoDirection", R"({"lights":[{"type":"directional","direction":[0,0,0],"intensity":[1,1,1]}]})",
                   "lights[0].direction: is zero"},
-        BadLights{R"({"lights":[{"type":"spot","position":[0,0,0],"direction":[0,0,1],"intensity":[1,1,1],
+        BadLights{"WideCone", R"({"lights":[{"type":"spot","position":[0,0,0],"direction":[0,0,1],"intensity":[1,1,1],
                   "outer_cone_angle":3}]})",
                   "outer_cone_angle"},
-        BadLights{R"({"lights":[{"type":"spot","position":[0,0,0],"direction":[0,0,1],"intensity":[1,1,1],
+        BadLights{"InnerConeWiderThanOuter",
+                  R"({"lights":[{"type":"spot","position":[0,0,0],"direction":[0,0,1],"intensity":[1,1,1],
                   "inner_cone_angle":0.5,"outer_cone_angle":0.2}]})",
-                  "outer_cone_angle"}));
+                  "outer_cone_angle"}),
+    test::kByName);
 
 }  // namespace
 }  // namespace chiaro::renderer::tests

@@ -6,6 +6,7 @@
 
 #include "renderer/image/image_file.h"
 #include "tests/renderer/io/gltf_builder.h"
+#include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
 namespace {
@@ -95,6 +96,7 @@ TEST(GltfAccessors, WithoutABufferViewTheBaseIsZero) {
 }
 
 struct ModeCase {
+  const char* name;
   int mode;
   std::size_t triangles;
 };
@@ -117,8 +119,10 @@ TEST_P(GltfModes, TrianglesFaceTheSameWay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllModes, GltfModes,
-                         testing::Values(ModeCase{0, 0}, ModeCase{1, 0}, ModeCase{2, 0}, ModeCase{3, 0}, ModeCase{4, 1},
-                                         ModeCase{5, 2}, ModeCase{6, 2}));
+                         testing::Values(ModeCase{"Points", 0, 0}, ModeCase{"Lines", 1, 0}, ModeCase{"LineLoop", 2, 0},
+                                         ModeCase{"LineStrip", 3, 0}, ModeCase{"Triangles", 4, 1},
+                                         ModeCase{"TriangleStrip", 5, 2}, ModeCase{"TriangleFan", 6, 2}),
+                         test::kByName);
 
 TEST(GltfMeshes, WithoutNormalsTrianglesGetVerticesOfTheirOwn) {
   GltfBuilder gltf;

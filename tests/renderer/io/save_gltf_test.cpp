@@ -6,6 +6,7 @@
 #include "renderer/image/image_file.h"
 #include "renderer/io/load_gltf.h"
 #include "tests/renderer/io/gltf_builder.h"
+#include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
 namespace {
@@ -78,7 +79,7 @@ TEST_P(SaveGltf, LightsComeBackAndNothingElseChanges) {
   EXPECT_EQ(fingerprint(load_gltf(lit).scene), fingerprint(load_gltf(scene).scene));
 }
 
-INSTANTIATE_TEST_SUITE_P(Containers, SaveGltf, testing::Values("lit.glb", "lit.gltf"));
+INSTANTIATE_TEST_SUITE_P(Containers, SaveGltf, testing::Values("lit.glb", "lit.gltf"), test::kByText);
 
 TEST(SaveGltfLights, OldOnesAreTakenOutUnlessKept) {
   const TemporaryFolder folder;
@@ -144,7 +145,7 @@ TEST_P(SaveScatteredGltf, ExternalBuffersAndImagesAreEmbedded) {
   EXPECT_EQ(loaded.scene.textures.at(0).rgba, (std::vector<std::uint8_t>{255, 0, 0, 255}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Containers, SaveScatteredGltf, testing::Values("lit.glb", "lit.gltf"));
+INSTANTIATE_TEST_SUITE_P(Containers, SaveScatteredGltf, testing::Values("lit.glb", "lit.gltf"), test::kByText);
 
 TEST(SaveGltfLights, AMissingFileIsNamedAndNothingIsWritten) {
   const TemporaryFolder folder;

@@ -6,6 +6,7 @@
 
 #include "renderer/core/sampler.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/directions.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -13,11 +14,7 @@ namespace {
 using test::add_mesh;
 using test::lambert;
 using test::rectangle;
-
-Vec3f uniform_direction(Vec2f u) {
-  const float z = 1 - 2 * u.x, sine = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * kPi * u.y;
-  return {sine * std::cos(phi), sine * std::sin(phi), z};
-}
+using test::uniform_direction;
 
 // Mean and its standard error, as if samples were independent.
 struct Mean {

@@ -5,6 +5,7 @@
 #include "renderer/core/sampler.h"
 #include "renderer/trace/surface_point.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/directions.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -12,11 +13,7 @@ namespace {
 using test::add_mesh;
 using test::lambert;
 using test::rectangle;
-
-Vec3f uniform_direction(Vec2f u) {
-  const float z = 1 - 2 * u.x, sine = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * kPi * u.y;
-  return {sine * std::cos(phi), sine * std::sin(phi), z};
-}
+using test::uniform_direction;
 
 Mat4f turned(Vec3f translation, Vec3f scale) {
   return make_transform(translation, {0.18257419F, 0.36514837F, 0.54772256F, 0.73029674F}, scale);
@@ -180,45 +177,118 @@ TEST(RayTracer, BlendedSurfacesStopTheirAlphaOfAllRays) {
   }
 }
 
-// Planes of all directions through points `distance` from the origin, 3 × `scale` across; none may hide its own points.
-void expect_no_self_intersection(float scale, float distance) {
-  for (std::uint32_t plane = 0; plane < 20; ++plane) {
-    Sampler sampler(3, plane, 0);
-    const Vec3f n = uniform_direction(sampler.next_2d());
-    const Vec3f center = distance * uniform_direction(sampler.next_2d());
-    const Frame3f frame(n);
-    const Vec3f u = 3 * scale * frame.tangent, v = 3 * scale * frame.bitangent;
-    Scene scene;
-    add_mesh(scene, rectangle(center - 0.5F * (u + v), u, v), lambert({1, 1, 1}), "plane");
-    const RayTracer tracer(scene);
-    for (std::uint32_t k = 0; k < 500; ++k) {
-      Sampler s(4, plane, k);
-      const Vec2f place = s.next_2d();
-      const float spread = k % 2 == 0 ? 0.8F : 1e-3F;
-      const Vec3f at = center + spread * ((place.x - 0.5F) * u + (place.y - 0.5F) * v);
-      const Vec3f eye = at + scale * normalize(n + 0.9F * uniform_direction(s.next_2d()));
-      const auto hit = tracer.intersect({eye, normalize(at - eye), 0, kInfinity, 0});
-      if (!hit) continue;
-      const SurfacePoint point = make_surface_point(scene, {eye, normalize(at - eye), 0, kInfinity, 0}, *hit);
-      const Vec3f origin = offset_point(point.position, point.geometric_normal);
-      EXPECT_LT(length(origin - point.position), 3e-5F + 1e-4F * (scale + distance));
-      const Vec3f away = frame.world_from_local(sample_cosine_hemisphere(s.next_2d()));
-      ASSERT_FALSE(tracer.occluded({origin, away, 0, kInfinity, 0})) << scale << ", " << distance << ", " << plane;
-      ASSERT_FALSE(tracer.occluded_between(origin, eye, 0)) << scale << ", " << distance << ", " << plane;
-      ASSERT_FALSE(tracer.occluded_between(eye, origin, 0)) << scale << ", " << distance << ", " << plane;
+constexpr float kUlp = 0x1p-23F;  // of a number, at most
+
+// A plane, drawn once or as one of two instances.
+struct PlaneCase {
+  Vec3f normal, center;
+  float size;          // metres
+  float flatness = 1;  // 1: two right-angled triangles; less: obtuse ones, so many times as high
+  bool instanced = false;
+};
+
+Scene plane_scene(const PlaneCase& plane) {
+  const Frame3f frame(plane.normal);
+  const Vec3f u = plane.size * frame.tangent;
+  const Vec3f v = plane.size * (plane.flatness * frame.bitangent + (plane.flatness < 1 ? 0.5F : 0) * frame.tangent);
+  Scene scene;
+  add_mesh(scene, rectangle(plane.center - 0.5F * (u + v), u, v), lambert({1, 1, 1}), "plane");
+  if (!plane.instanced) return scene;
+  const Mat4f world_from_object = turned({-2 * plane.size, plane.size, 0}, {2, 0.5F, -0.1F});
+  for (Vec3f& p : scene.meshes[0].positions) p = transform_point(inverse_affine(world_from_object), p);
+  scene.instances[0].world_from_object = world_from_object;
+  scene.instances.push_back({"far", 0, turned({1e3F * plane.size, 0, 0}, {1, 1, 1})});
+  return scene;
+}
+
+// How many of so many random views of a plane from `distance` meet a point from which rays, off at all angles or back
+// to the eye, meet the plane again.
+int points_that_hide_themselves(const PlaneCase& plane, int views, float distance) {
+  const Scene scene = plane_scene(plane);
+  const RayTracer tracer(scene);
+  const Frame3f frame(plane.normal);
+  int hidden = 0, hits = 0;
+  for (std::uint32_t k = 0; k < std::uint32_t(views); ++k) {
+    Sampler s(4, 0, k);
+    const Vec2f place = s.next_2d();
+    const float spread = k % 4 == 0 ? 1e-3F : 0.8F;
+    const Vec3f at =
+        plane.center +
+        spread * plane.size * ((place.x - 0.5F) * frame.tangent + plane.flatness * (place.y - 0.5F) * frame.bitangent);
+    const Vec3f eye = at + distance * normalize(plane.normal + 0.95F * uniform_direction(s.next_2d()));
+    const Ray ray{eye, normalize(at - eye), 0, kInfinity, 0};
+    const auto hit = tracer.intersect(ray);
+    if (!hit || hit->instance != 0) continue;
+    ++hits;
+    const SurfacePoint point = make_surface_point(scene, ray, *hit);
+    const Vec3f origin = offset_point(point.position, point.geometric_normal, point.rounding);
+    const Vec2f u = s.next_2d();
+    const Vec3f local = k % 2 == 0 ? sample_cosine_hemisphere(u) : uniform_direction({0.5F - 0.01F * u.x, u.y});
+    const Vec3f away = normalize(Frame3f(point.geometric_normal).world_from_local(local));
+    hidden += tracer.occluded({origin, away, 0, kInfinity, 0}) || tracer.occluded_between(origin, eye, 0) ? 1 : 0;
+  }
+  EXPECT_GT(hits, views / 8);
+  return hidden;
+}
+
+TEST(OffsetPoint, NoPlaneHidesItselfWhateverItsSizeNearOrFarFromTheOrigin) {
+  for (const float unit : {1e-3F, 1.0F, 1e3F}) {
+    for (const float size : {3 * unit, 9 * unit, 30 * unit}) {
+      for (std::uint32_t i = 0; i < 24; ++i) {
+        Sampler s(3, 0, i);
+        const Vec3f normal = uniform_direction(s.next_2d()), toward = uniform_direction(s.next_2d());
+        const float distance = std::array{0.0F, 0.01F, 1.0F, 20.0F}[i % 4];
+        const PlaneCase plane{normal, distance * unit * toward, size, 1, i % 8 >= 4};
+        EXPECT_EQ(points_that_hide_themselves(plane, 1000, unit), 0) << size << " m, case " << i;
+      }
     }
   }
 }
 
-TEST(OffsetPoint, NeverMeetsItsOwnSurface) {
-  for (const float scale : {0.01F, 1.0F, 1000.0F}) expect_no_self_intersection(scale, scale);
+TEST(OffsetPoint, NoObtuseTriangleHidesItself) {
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    Sampler s(5, 0, i);
+    const Vec3f normal = uniform_direction(s.next_2d()), center = 0.3F * uniform_direction(s.next_2d());
+    const PlaneCase plane{normal, center, 1, 0.05F, i % 2 == 1};
+    EXPECT_EQ(points_that_hide_themselves(plane, 1000, 1), 0) << "case " << i;
+  }
 }
 
-TEST(OffsetPoint, NeverMeetsItsOwnSurfaceNearTheOrigin) {
-  // Where coordinates are small but the surface and the light are not.
-  for (const float scale : {0.01F, 1.0F}) {
-    expect_no_self_intersection(scale, 0);
-    expect_no_self_intersection(scale, 0.01F * scale);
+TEST(OffsetPoint, IsAFewUnitsInTheLastPlaceOfTheTrianglesCoordinates) {
+  for (const float unit : {1e-3F, 1.0F, 1e3F}) {
+    const Scene scene = plane_scene({normalize(Vec3f{1, 2, 3}), {0, 0, 5 * unit}, 3 * unit});
+    const RayTracer tracer(scene);
+    const Ray ray{{0.1F * unit, 0.1F * unit, 9 * unit}, {0, 0, -1}, 0, kInfinity, 0};
+    const auto hit = tracer.intersect(ray);
+    ASSERT_TRUE(hit);
+    const SurfacePoint point = make_surface_point(scene, ray, *hit);
+    const float offset = length(offset_point(point.position, point.geometric_normal, point.rounding) - point.position);
+    EXPECT_GT(offset, 2 * kUlp * 5 * unit);
+    EXPECT_LT(offset, 8 * kUlp * 7 * unit);
+  }
+}
+
+TEST(OffsetPoint, WallsMuchThinnerThanTheSceneKeepTheLightOut) {
+  // A plate, its sides 1e-5 of its size apart, tilted.
+  for (const float unit : {1e-3F, 1.0F, 1e3F}) {
+    const Frame3f frame(normalize(Vec3f{1, 2, 3}));
+    const Vec3f u = 9 * unit * frame.tangent, v = 9 * unit * frame.bitangent, depth = 9e-5F * unit * frame.normal;
+    Scene scene;
+    add_mesh(scene, rectangle(-0.5F * (u + v), u, v), lambert({1, 1, 1}), "lit");
+    add_mesh(scene, rectangle(-0.5F * (u + v) - depth, v, u), lambert({1, 1, 1}), "dark");
+    const RayTracer tracer(scene);
+    for (std::uint32_t k = 0; k < 2000; ++k) {
+      Sampler s(6, 0, k);
+      const Vec2f place = s.next_2d();
+      const Vec3f at = 0.8F * ((place.x - 0.5F) * u + (place.y - 0.5F) * v);
+      const Ray from_behind{at - unit * frame.normal, frame.normal, 0, kInfinity, 0};
+      const auto hit = tracer.intersect(from_behind);
+      ASSERT_TRUE(hit);
+      const SurfacePoint point = make_surface_point(scene, from_behind, *hit);
+      const Vec3f origin = offset_point(point.position, point.geometric_normal, point.rounding);
+      const Vec3f light = at + unit * normalize(frame.normal + 0.7F * uniform_direction(s.next_2d()));
+      ASSERT_TRUE(tracer.occluded_between(origin, light, 0)) << k;
+    }
   }
 }
 
@@ -233,7 +303,7 @@ TEST(OffsetPoint, NoFalseShadowsInTheCornersOfARoom) {
     const Vec3f light{0.1F + 3.8F * place.x, 0.1F + 2.8F * place.y, 0.1F + 3.8F * s.next_1d()};
     for (const Vec3f p :
          {Vec3f{0, 1e-4F, 5e-5F}, Vec3f{0, 1e-4F, 4 * across.x}, Vec3f{0, 3 * across.x, 4 * across.y}}) {
-      const Vec3f origin = offset_point(p, {1, 0, 0});
+      const Vec3f origin = offset_point(p, {1, 0, 0}, surface_rounding(4, 2.5F));
       EXPECT_FALSE(tracer.occluded_between(light, origin, 0)) << p.y << ", " << p.z;
       EXPECT_FALSE(tracer.occluded_between(origin, light, 0)) << p.y << ", " << p.z;
     }

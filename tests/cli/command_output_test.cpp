@@ -1,0 +1,113 @@
+// What commands print, and under which names.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/image/image_file.h"
+#include "tests/cli/run_with.h"
+#include "tests/inverse/target/foreign_mesh.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chiaro::cli {
+namespace {
+
+using inverse::tests::ForeignNode;
+using inverse::tests::write_foreign_mesh;
+using nlohmann::json;
+using test::TemporaryFolder;
+using tests::Outcome;
+using tests::run_with;
+
+const std::string kScenes = std::string(CHIARO_SOURCE_DIR) + "/scenes/";
+
+Outcome render_preview(const TemporaryFolder& folder, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"render",
+                                     kScenes + "cornell.glb",
+                                     "-o",
+                                     folder / "frame.exr",
+                                     "--width",
+                                     "8",
+                                     "--samples",
+                                     "1",
+                                     "--bounces",
+                                     "0",
+                                     "--preview",
+                                     "--ocio",
+                                     kScenes + "color/config.ocio"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_with(arguments);
+}
+
+TEST(CliRender, NamesThePreviewAmongWhatItWrote) {
+  const TemporaryFolder folder;
+  const std::string frame = folder / "frame.exr", preview = folder / "frame.png";
+  const Outcome text = render_preview(folder, {});
+  ASSERT_EQ(text.exit_code, kDone) << text.standard_error;
+  EXPECT_NE(text.standard_output.find(frame + ", " + preview), std::string::npos) << text.standard_output;
+  const json summary = json::parse(render_preview(folder, {"--json"}).standard_output);
+  EXPECT_EQ(summary["written"], json::array({frame, preview}));
+  for (const std::string file : summary["written"]) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+}
+
+std::string grey_frame(const TemporaryFolder& folder, const std::string& name, float grey) {
+  renderer::Image image = renderer::make_image(4, 4, {"R", "G", "B"});
+  image.pixels.assign(image.pixels.size(), grey);
+  renderer::save_image(image, folder / name, renderer::PixelType::kHalf);
+  return folder / name;
+}
+
+TEST(CliCompare, QuietPrintsNothingButTheSummaryOfJson) {
+  const TemporaryFolder folder;
+  const std::string a = grey_frame(folder, "a.exr", 1), b = grey_frame(folder, "b.exr", 2);
+  const Outcome quiet = run_with({"compare", a, b, "--quiet"});
+  EXPECT_EQ(quiet.exit_code, kDone);
+  EXPECT_EQ(quiet.standard_output + quiet.standard_error, "");
+  const Outcome as_json = run_with({"compare", a, b, "--quiet", "--json"});
+  EXPECT_EQ(json::parse(as_json.standard_output)["relative_l2"], 0.5);
+  EXPECT_EQ(run_with({"compare", a, b, "--quiet", "--fail-above", "0.1"}).exit_code, kLimitExceeded);
+  EXPECT_NE(run_with({"compare", a, b}).standard_output, "");
+}
+
+TEST(CliInspect, QuietSaysByItsExitAloneWhetherAFileIsGood) {
+  const Outcome good = run_with({"inspect", kScenes + "cornell.glb", "--quiet"});
+  EXPECT_EQ(good.exit_code, kDone);
+  EXPECT_EQ(good.standard_output + good.standard_error, "");
+}
+
+const ForeignNode kColoured{"floor", {{"COLOR_0", {0.5F, 0, 0, 0.5F, 0, 0, 0.5F, 0.75F, 0}}}};
+
+json inspected(const std::filesystem::path& file) {
+  return json::parse(run_with({"inspect", file, "--json"}).standard_output);
+}
+
+TEST(CliInspect, BareSurfacesWithColoursAreATarget) {
+  const TemporaryFolder folder;
+  const json found = inspected(write_foreign_mesh(folder, {kColoured, {"unpainted", {}}}));
+  EXPECT_EQ(found["kind"], "target");
+  EXPECT_EQ(found["attribute"], "COLOR_0");
+  EXPECT_EQ(found["receivers"], 6);
+  EXPECT_EQ(found["mean_illumination"], json::array({0.5, 0.25, 0.0}));
+  EXPECT_EQ(found["max_illumination"], json::array({0.5, 0.75, 0.0}));
+  EXPECT_EQ(found["weight"], json({{"min", 0.0}, {"max", 1.0}, {"zero", 3}}));
+}
+
+TEST(CliInspect, ValuesInCandelaComeBeforeColours) {
+  const TemporaryFolder folder;
+  ForeignNode node = kColoured;
+  node.attributes.emplace_back("_ILLUMINATION", std::vector<float>(9, 7));
+  const json found = inspected(write_foreign_mesh(folder, {node}));
+  EXPECT_EQ(found["attribute"], "_ILLUMINATION");
+  EXPECT_EQ(found["mean_illumination"], json::array({7.0, 7.0, 7.0}));
+}
+
+TEST(CliInspect, ColouredSurfacesWithMaterialsAreAScene) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = write_foreign_mesh(folder, {kColoured});
+  json gltf = json::parse(renderer::read_file(file));
+  gltf["materials"] = json::array({{{"name", "wood"}}});
+  EXPECT_EQ(inspected(folder.write("scene.gltf", gltf.dump()))["kind"], "scene");
+}
+
+}  // namespace
+}  // namespace chiaro::cli
