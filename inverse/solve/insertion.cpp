@@ -89,9 +89,7 @@ std::vector<Eigen::Vector3d> places_in_front(const LightResponse& response, cons
 
 LightEstimates propose_insertions(const LightResponse& response, const Observations& observations,
                                   const LightEstimates& lights) {
-  Observations residual = observations;
-  residual.wanted -= total_illumination(evaluate_columns(response, lights, VisibilitySource::kTraced), lights,
-                                        observations.wanted.rows());
+  const Observations residual = less(observations, response, lights);
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
   LightEstimates proposals;
   for (float t = kFarthest; t > kNearest; t /= kStep) {

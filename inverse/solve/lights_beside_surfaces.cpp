@@ -81,15 +81,28 @@ class SingleLight {
       const Place refined = refine(start);
       if (refined.misfit < best.misfit) best = refined;
     }
-    for (int round = 0; round < kCalibrations; ++round) {
-      calibrate(best.light.position);
-      best.misfit = std::numeric_limits<double>::infinity();
-      best = refine(best);
+    return calibrated(best);
+  }
+
+  LightEstimate find_near(const Eigen::Vector3d& position) {
+    Place start{{position, Eigen::Array3d::Zero()}, 0, std::numeric_limits<double>::infinity()};
+    for (const std::size_t i : brightest_) {
+      const Vec3f p = response_.receivers()[i].position;
+      start.distance = std::min(start.distance, (position - Eigen::Vector3d(p.x, p.y, p.z)).norm());
     }
-    return best.light;
+    return calibrated(start);
   }
 
  private:
+  LightEstimate calibrated(Place place) {
+    for (int round = 0; round < kCalibrations; ++round) {
+      calibrate(place.light.position);
+      place.misfit = std::numeric_limits<double>::infinity();
+      place = refine(place);
+    }
+    return place.light;
+  }
+
   std::vector<Vec3f> gathered(const Eigen::Vector3d& position) const {
     const Vec3f light{float(position.x()), float(position.y()), float(position.z())};
     return indirect_illumination_at(exact_.tracer(), exact_.gather(), importance_, brightest_.size(), light);
@@ -178,12 +191,27 @@ LightEstimates find_lights_beside_surfaces(const LightResponse& response, const 
     if (effective_count(energy) > kFew * double(energy.size())) break;
     LightEstimates one{SingleLight(response, exact, left).find()};
     exact.correct_by_paths(response, one);
-    left.wanted -=
-        total_illumination(evaluate_columns(response, one, VisibilitySource::kTraced), one, left.wanted.rows());
+    left = less(std::move(left), response, one);
     if (squared_residuals(left).sum() > (1 - kMustExplain) * energy.sum()) break;
     found.push_back(one.front());
   }
   return found;
+}
+
+LightEstimates refine_lights_beside_surfaces(const LightResponse& response, const ExactIndirect& exact,
+                                             const Observations& observations, const LightEstimates& lights,
+                                             const LightEstimates& others) {
+  const Observations left = less(observations, response, others);
+  LightEstimates refined = lights;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    LightEstimates rest = refined;
+    rest.erase(rest.begin() + std::ptrdiff_t(j));
+    refined[j] = SingleLight(response, exact, less(left, response, rest)).find_near(lights[j].position);
+    LightEstimates one{refined[j]};
+    exact.correct_by_paths(response, one);
+    refined[j] = one.front();
+  }
+  return refined;
 }
 
 }  // namespace chiaro::inverse

@@ -12,4 +12,9 @@ namespace chiaro::inverse {
 LightEstimates find_lights_beside_surfaces(const LightResponse& response, const ExactIndirect& exact,
                                            const Observations& observations, int most);
 
+// The same lights where they explain best what `others` leave to them.
+LightEstimates refine_lights_beside_surfaces(const LightResponse& response, const ExactIndirect& exact,
+                                             const Observations& observations, const LightEstimates& lights,
+                                             const LightEstimates& others);
+
 }  // namespace chiaro::inverse

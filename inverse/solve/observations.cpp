@@ -1,6 +1,7 @@
 #include "inverse/solve/observations.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "inverse/numerics/nnls.h"
@@ -9,7 +10,21 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kOrdinary = 0.97;  // of the receivers are as bright as lights at a distance make them
+constexpr double kOrdinary = 0.97;  // of all receivers are as bright as lights at a distance make them
+
+// The brightness that this part of all receivers do not exceed.
+double quantile(const Eigen::VectorXd& brightness, const Eigen::VectorXd& stands_for, double part) {
+  std::vector<Eigen::Index> order(std::size_t(brightness.size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return brightness[a] < brightness[b]; });
+  double below = 0;
+  const double wanted = part * stands_for.sum();
+  for (const Eigen::Index i : order) {
+    below += stands_for[i];
+    if (below >= wanted) return brightness[i];
+  }
+  return order.empty() ? 0 : brightness[order.back()];
+}
 
 }  // namespace
 
@@ -20,12 +35,10 @@ void Observations::measure_target() {
 
 Observations with_capped_weights(const Observations& observations) {
   const Eigen::VectorXd brightness = observations.target.rowwise().norm();
-  std::vector<double> sorted(brightness.data(), brightness.data() + brightness.size());
-  const auto nth = sorted.begin() + std::ptrdiff_t(kOrdinary * double(sorted.size() - 1));
-  std::nth_element(sorted.begin(), nth, sorted.end());
+  const double cap = quantile(brightness, observations.stands_for, kOrdinary);
   Observations capped = observations;
   for (Eigen::Index i = 0; i < brightness.size(); ++i) {
-    if (brightness[i] > *nth) capped.sqrt_weight[i] *= *nth / brightness[i];
+    if (brightness[i] > cap) capped.sqrt_weight[i] *= cap / brightness[i];
   }
   capped.measure_target();
   return capped;
@@ -79,6 +92,12 @@ std::vector<Column> evaluate_columns(const LightResponse& response, const LightE
     if (lights[j].correction.size() > 0) columns[j] += lights[j].correction;
   });
   return columns;
+}
+
+Observations less(Observations observations, const LightResponse& response, const LightEstimates& lights) {
+  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  observations.wanted -= total_illumination(columns, lights, observations.wanted.rows());
+  return observations;
 }
 
 }  // namespace chiaro::inverse

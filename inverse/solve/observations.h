@@ -11,6 +11,7 @@ namespace chiaro::inverse {
 struct Observations {
   Column wanted;  // cd/m², the fixed part (emission, kept lights) taken off
   Eigen::VectorXd sqrt_weight;
+  Eigen::VectorXd stands_for;      // of how many receivers each is drawn as the sample
   Column target;                   // Ψ, cd/m², with the fixed part
   Eigen::VectorXd standard_error;  // of Ψ, cd/m²; 0 where it is not known
   double target_norm = 0;          // √Σ weight · Ψ²: the denominator of (3.6)
@@ -52,5 +53,8 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
 // Columns of all lights with their corrections, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      VisibilitySource visibility);
+
+// With the light of these lights taken off what is wanted.
+Observations less(Observations observations, const LightResponse& response, const LightEstimates& lights);
 
 }  // namespace chiaro::inverse

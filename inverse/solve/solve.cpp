@@ -78,9 +78,11 @@ Observations observe(const Target& target, const Importance& importance, const s
   const Column wanted = target_at(target, chosen);
   o.wanted = wanted;
   o.sqrt_weight.resize(wanted.rows());
+  o.stands_for.resize(wanted.rows());
   for (Eigen::Index i = 0; i < wanted.rows(); ++i) {
-    const double probability = unbiased ? importance.probability[std::size_t(i)] : 1;
-    o.sqrt_weight[i] = std::sqrt(double(target.weight[chosen[std::size_t(i)]]) / probability);
+    const double weight = double(target.weight[chosen[std::size_t(i)]]);
+    o.stands_for[i] = 1 / importance.probability[std::size_t(i)];
+    o.sqrt_weight[i] = std::sqrt(unbiased ? weight * o.stands_for[i] : weight);
     for (int c = 0; c < 3; ++c) o.wanted(i, c) -= double(fixed[std::size_t(i)][c]);
   }
   o.target = wanted;
@@ -161,17 +163,26 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light"};
 }
 
-Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& response, const Observations& remaining,
-                         const Observations& judged, const LightEstimates& beside_surfaces, const LightTree& tree,
+Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& response, const Observations& searched,
+                         const Observations& judged, LightEstimates beside_surfaces, const LightTree& tree,
                          const SolveOptions& options, StageClock& clock) {
   const int already = int(beside_surfaces.size());
+  Observations remaining = less(searched, response, beside_surfaces);
   const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
                                options.max_lights - already};
   const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  const LightCountResult count = choose_light_count(
-      response, remaining, tree,
-      {options.max_lights - already, std::max(0, options.exact_lights - already), options.time_limit});
+  const LightEstimates start = joined(beside_surfaces, cut.lights);
+
+  const LightCountOptions count_options{options.max_lights - already, std::max(0, options.exact_lights - already),
+                                        options.time_limit};
+  LightCountResult count = choose_light_count(response, remaining, tree, count_options);
+  if (already > 0) {
+    // What was found first was found beside the light of all others.
+    beside_surfaces = refine_lights_beside_surfaces(response, exact, judged, beside_surfaces, count.lights);
+    remaining = less(searched, response, beside_surfaces);
+    count = choose_light_count(response, remaining, tree, count_options);
+  }
   StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}};
   for (std::size_t n = 0; n < count.error_curve.size(); ++n) {
     figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
@@ -182,7 +193,7 @@ Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& respon
   const Observations& last = beside_surfaces.empty() ? judged : remaining;
   const PolishedLights polished = polish_lights(exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  return {joined(beside_surfaces, polished.lights), joined(beside_surfaces, cut.lights),
+  return {joined(beside_surfaces, polished.lights), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more"};
@@ -241,18 +252,18 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
 
   const bool joint = options.method == SolveMethod::kJoint;
   const Observations judged = joint ? observe(problem.target, importance, fixed, true) : published;
-  Observations remaining = published;
+  Observations searched = published;
   std::optional<ExactIndirect> exact;
   LightEstimates beside_surfaces;
   if (joint) {
     exact.emplace(problem.tracer, samples, transport.cache.settings);
     clock.finish("exact_indirect", {});
     beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
-    remaining = with_capped_weights(published);
-    remaining.wanted -= illumination_of(response, beside_surfaces);
+    searched = with_capped_weights(published);
     result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
   }
 
+  const Observations remaining = less(searched, response, beside_surfaces);
   const LightDistribution distribution = estimate_light_distribution(response, remaining, options.weak_light);
   if (distribution.rounds[1].lights.empty() && beside_surfaces.empty())
     no_light_possible(problem, "no position in the region lights the painted surfaces");
@@ -264,7 +275,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
   const Optimum optimum =
-      joint ? optimize_jointly(*exact, response, remaining, judged, beside_surfaces, tree, options, clock)
+      joint ? optimize_jointly(*exact, response, searched, judged, beside_surfaces, tree, options, clock)
             : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 

@@ -256,13 +256,13 @@ std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const Gat
 
 std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather,
                                                     std::span<const std::size_t> receivers) {
+  if (gather.points.empty()) return {};
   std::vector<LightBlock> first(gather.points.size());
   for (std::size_t l = 0; l < receivers.size(); ++l) {
     for (const SparseTransport::Entry& entry : gather.receiver_from_point.row(receivers[l])) {
       for (int c = 0; c < 3; ++c) first[entry.column].channel[c][l] += entry.weight[c];
     }
   }
-  if (gather.points.empty()) return first;
   return sum_of_bounces(gather.point_from_point.transposed(gather.points.size()), std::move(first), gather.bounces);
 }
 

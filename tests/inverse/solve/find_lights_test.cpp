@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/insertion.h"
 #include "inverse/solve/light_clusters.h"
 #include "inverse/solve/light_distribution.h"
+#include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/optimize_simplex.h"
 #include "inverse/solve/refine_joint.h"
+#include "inverse/solve/settle_positions.h"
 #include "tests/inverse/solve/painted_corner.h"
 
 namespace chiaro::inverse {
@@ -166,13 +169,55 @@ TEST(OptimizeSimplex, LowersTheErrorAndKeepsTheBounds) {
   EXPECT_GT(optimum.evaluations, 20);
 }
 
+TEST(SettlePositions, GoesOnWhereDescentStopsAndIsNeverWorse) {
+  const LightEstimates known = known_lights(2);
+  const DirectProblem problem(known);
+  LightEstimates start = known;
+  for (LightEstimate& light : start) light.position += Vector3d(0.02, -0.015, 0.02);
+  const double before = relative_error(
+      problem.observations(), total_illumination(evaluate_columns(problem.response(), start, VisibilitySource::kTraced),
+                                                 start, problem.observations().wanted.rows()));
+  const SettledLights settled =
+      settle_positions(problem.response(), problem.observations(), start, 0.003 * problem.diagonal());
+  EXPECT_LT(settled.error, 0.1 * before);
+  EXPECT_LT(farthest_from(known, positions_of(settled.lights)), 0.01);
+  EXPECT_GT(settled.evaluations, 0);
+  const SettledLights again = settle_positions(problem.response(), problem.observations(), known, 0.05);
+  EXPECT_LE(again.error, 1e-6);
+  EXPECT_LE(farthest_from(known, positions_of(again.lights)), 1e-6);
+}
+
+TEST(Insertion, FitsTheIntensityThatExplainsMost) {
+  const LightEstimates known = known_lights(1);
+  const DirectProblem problem(known);
+  LightEstimate light{known[0].position, Array3d::Zero()};
+  const Column column = problem.response().direct(light.position);
+  const double explained = fit_intensity(problem.observations(), column, light);
+  EXPECT_TRUE(light.intensity.isApprox(known[0].intensity, 1e-9)) << light.intensity.transpose();
+  const double all = (problem.observations().sqrt_weight.asDiagonal() * problem.observations().wanted).squaredNorm();
+  EXPECT_NEAR(explained, all, 1e-9 * all);
+}
+
+TEST(Insertion, ProposesTheLightThatIsMissing) {
+  const LightEstimates known = known_lights(2);
+  const DirectProblem problem(known);
+  const LightEstimates proposed = propose_insertions(problem.response(), problem.observations(), {known[0]});
+  ASSERT_FALSE(proposed.empty());
+  // The grid's best is the last; a cell's diagonal away at most.
+  EXPECT_LT((proposed.back().position - known[1].position).norm(), 1.8 * spacing_of(problem));
+}
+
+TEST(LightsBesideSurfaces, AreNoneWhereNoneOutshinesTheRest) {
+  const DirectProblem problem(known_lights(3));
+  EXPECT_TRUE(find_lights_beside_surfaces(problem.response(), problem.exact(), problem.observations(), 10).empty());
+}
+
 class CountedLights : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(CountedLights, AreCountedAndFound) {
   const LightEstimates known = known_lights(GetParam());
   const DirectProblem problem(known);
-  const LightCountResult result =
-      choose_light_count(problem.response(), problem.observations(), tree_of(problem), {});
+  const LightCountResult result = choose_light_count(problem.response(), problem.observations(), tree_of(problem), {});
   EXPECT_EQ(result.lights.size(), known.size()) << ::testing::PrintToString(result.error_curve);
   EXPECT_LT(farthest_from(known, positions_of(result.lights)), 0.01 * problem.diagonal());
   EXPECT_LT(result.error, 0.02);
@@ -189,16 +234,13 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   const LightTree tree = tree_of(problem);
   LightCountOptions options;
   options.max_lights = 2;
-  EXPECT_LE(
-      choose_light_count(problem.response(), problem.observations(), tree, options).lights.size(), 2U);
+  EXPECT_LE(choose_light_count(problem.response(), problem.observations(), tree, options).lights.size(), 2U);
   options = {};
   options.exact_lights = 4;
-  EXPECT_EQ(
-      choose_light_count(problem.response(), problem.observations(), tree, options).lights.size(), 4U);
+  EXPECT_EQ(choose_light_count(problem.response(), problem.observations(), tree, options).lights.size(), 4U);
   options = {};
   options.time_limit = 1e-9;
-  EXPECT_TRUE(
-      choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
+  EXPECT_TRUE(choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
 }
 
 }  // namespace

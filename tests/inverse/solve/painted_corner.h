@@ -84,6 +84,7 @@ class DirectProblem {
     observations_.wanted = total_illumination(evaluate_columns(*response_, lights, VisibilitySource::kTraced), lights,
                                               Eigen::Index(count));
     observations_.sqrt_weight = Eigen::VectorXd::Ones(Eigen::Index(count));
+    observations_.stands_for = Eigen::VectorXd::Ones(Eigen::Index(count));
     observations_.target = observations_.wanted;
     observations_.standard_error = Eigen::VectorXd::Zero(Eigen::Index(count));
     observations_.measure_target();

@@ -65,6 +65,28 @@ TEST(Solve, FindsTwoLightsByDirectLight) {
   EXPECT_LT(result.relative_l2, 0.01);
 }
 
+// Seven centimetres above a receiver of the floor, which then holds nearly all of the target's squared norm.
+TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
+  const PaintedCorner corner;
+  const Receivers& receivers = corner.receivers();
+  std::size_t beside = 0;
+  const auto distance = [&](std::size_t i) { return length(receivers.positions[i] - Vec3f{2.0F, 0.0F, 3.2F}); };
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    if (distance(i) < distance(beside)) beside = i;
+  }
+  const Vec3f p = receivers.samples[beside].position + 0.07F * receivers.samples[beside].normal;
+  LightEstimates known = known_lights(1);
+  known.push_back({{p.x, p.y, p.z}, {4, 8, 2}});
+  for (const int bounces : {0, -1}) {
+    const SolveResult result = solve(problem_of(corner, corner.target(known, bounces), bounces), quick());
+    ASSERT_EQ(result.lights.size(), 2U) << bounces;
+    const auto positions = positions_of(result);
+    EXPECT_LT(farthest_from({known[1]}, positions), 0.002) << bounces;  // metres
+    EXPECT_LT(farthest_from(known, positions), 0.02 * corner.diagonal());
+    EXPECT_LT(result.relative_l2, 0.05);
+  }
+}
+
 // What is left of the error when the noise of the target and of the evaluation is taken off.
 double error_beyond_noise(const SolveResult& result) {
   const double noise =

@@ -100,6 +100,33 @@ TEST(GatherOperator, UnoccludedIlluminationIsItsClosedForm) {
   EXPECT_EQ(unoccluded_illumination(at, {5, 2, 3}), 0);
 }
 
+TEST(GatherOperator, AdjointGivesTheSameLight) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const std::vector<SurfaceSample> receivers{{{1, 0, 3}, {0, 1, 0}}, {{3, 0, 1}, {0, 1, 0}}, {{2, 0, 3.5F}, {0, 1, 0}}};
+  const std::vector<std::size_t> some{2, 0};
+  const std::vector<Vec3f> lights{{3, 2, 3}, {0.5F, 0.1F, 2}};
+  for (const int bounces : {0, 1, 3, -1}) {
+    const GatherOperator gather =
+        make_gather_operator(tracer, receivers, {.samples = 64, .points_per_sample = 8, .bounces = bounces, .seed = 3});
+    const std::vector<LightBlock> importance = importance_of_gather_points(gather, some);
+    const std::vector<LightBlock> forward = indirect_illumination(tracer, gather, lights);
+    for (std::size_t light = 0; light < lights.size(); ++light) {
+      const auto adjoint = indirect_illumination_at(tracer, gather, importance, some.size(), lights[light]);
+      for (std::size_t k = 0; k < some.size() && bounces != 0; ++k) {
+        for (int c = 0; c < 3; ++c) {
+          const float expected = forward[some[k]].channel[c][light];
+          EXPECT_GT(expected, 0);
+          EXPECT_NEAR(adjoint[k][c], expected, 2e-4 * expected) << bounces;
+        }
+      }
+      if (bounces == 0) {
+        EXPECT_EQ(adjoint[0], (Vec3f{0, 0, 0}));
+      }
+    }
+  }
+}
+
 TEST(GatherOperator, SameLightForAnyNumberOfThreads) {
   const Scene scene = test::corner_with_ball();
   const RayTracer tracer(scene);

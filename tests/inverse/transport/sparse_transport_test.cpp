@@ -1,5 +1,7 @@
 #include "inverse/transport/sparse_transport.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "renderer/core/sampler.h"
@@ -60,6 +62,21 @@ TEST(SparseTransport, AddsUpEntriesOfOneColumn) {
   EXPECT_EQ(matrix.row(0)[1].column, 3U);
   EXPECT_EQ(matrix.row(0)[1].weight, (renderer::Vec3f{11, 22, 33}));
   EXPECT_TRUE(matrix.row(1).empty());
+}
+
+TEST(SparseTransport, TransposedSwapsRowsAndColumns) {
+  const Rows rows = random_rows();
+  const SparseTransport matrix = SparseTransport::from_rows(Rows(rows)), transposed = matrix.transposed(kColumns);
+  ASSERT_EQ(transposed.row_count(), std::size_t(kColumns));
+  EXPECT_EQ(transposed.entry_count(), matrix.entry_count());
+  for (std::uint32_t column = 0; column < kColumns; ++column) {
+    for (const auto& entry : transposed.row(column)) {
+      const auto row = matrix.row(entry.column);
+      const auto same = std::find_if(row.begin(), row.end(), [&](const auto& e) { return e.column == column; });
+      ASSERT_NE(same, row.end());
+      EXPECT_EQ(same->weight, entry.weight);
+    }
+  }
 }
 
 TEST(SparseTransport, OfNoRowsIsEmpty) {
