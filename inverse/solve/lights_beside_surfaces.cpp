@@ -55,9 +55,11 @@ struct Place {
   double distance = 0;
 };
 
-// Looks for the one light that explains the brightest receivers, all of them to the same fraction. To them it gives its
-// exact indirect light; to all others its direct light, which must not be more than they have: that tells places inside
-// a fixture from places outside.
+bool anything_wanted(const Observations& observations) { return (observations.wanted.array() > 0).any(); }
+
+// Looks for the one light that explains the brightest receivers (there must be some), all of them to the same fraction.
+// To them it gives its exact indirect light; to all others its direct light, which must not be more than they have:
+// that tells places inside a fixture from places outside.
 class SingleLight {
  public:
   SingleLight(const LightResponse& response, const ExactIndirect& exact, const Observations& observations)
@@ -186,7 +188,7 @@ LightEstimates find_lights_beside_surfaces(const LightResponse& response, const 
                                            const Observations& observations, int most) {
   Observations left = observations;
   LightEstimates found;
-  while (int(found.size()) < most) {
+  while (int(found.size()) < most && anything_wanted(left)) {
     const Eigen::VectorXd energy = squared_residuals(left);
     if (effective_count(energy) > kFew * double(energy.size())) break;
     LightEstimates one{SingleLight(response, exact, left).find()};
@@ -206,8 +208,9 @@ LightEstimates refine_lights_beside_surfaces(const LightResponse& response, cons
   for (std::size_t j = 0; j < lights.size(); ++j) {
     LightEstimates rest = refined;
     rest.erase(rest.begin() + std::ptrdiff_t(j));
-    refined[j] = SingleLight(response, exact, less(left, response, rest)).find_near(lights[j].position);
-    LightEstimates one{refined[j]};
+    const Observations alone = less(left, response, rest);
+    if (!anything_wanted(alone)) continue;
+    LightEstimates one{SingleLight(response, exact, alone).find_near(lights[j].position)};
     exact.correct_by_paths(response, one);
     refined[j] = one.front();
   }
