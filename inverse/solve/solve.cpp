@@ -24,7 +24,8 @@ constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the
 constexpr double kVerificationPaths = 2e7;        // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
 constexpr int kFixedSamples = 512;
-constexpr double kOnSurface = 0.5;  // of a target's receivers must lie on the scene
+constexpr double kNegligible = 1e-3;  // contribution to the target's norm
+constexpr double kOnSurface = 0.5;    // of a target's receivers must lie on the scene
 
 // Seeds of a solve's own path tracing differ from those that a target was traced with, whatever seed the user gave
 // both.
@@ -199,6 +200,18 @@ Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& respon
                                      : "no further light explains more"};
 }
 
+// Without the lights that the last descent left with less than what anybody sees of them; one always stays.
+LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
+                                  const LightEstimates& lights) {
+  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  LightEstimates kept;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
+    if (norm > kNegligible * judged.target_norm) kept.push_back(lights[j]);
+  }
+  return kept.empty() ? lights : kept;
+}
+
 int most_lights(const SolveOptions& options) {
   return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
 }
@@ -274,9 +287,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const LightTree tree = make_light_tree(response, remaining, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
-  const Optimum optimum =
-      joint ? optimize_jointly(*exact, response, searched, judged, beside_surfaces, tree, options, clock)
-            : optimize_as_published(response, published, tree, options, clock);
+  Optimum optimum = joint ? optimize_jointly(*exact, response, searched, judged, beside_surfaces, tree, options, clock)
+                          : optimize_as_published(response, published, tree, options, clock);
+  if (joint && options.exact_lights == 0) optimum.lights = without_negligible(response, judged, optimum.lights);
   result.optimal_seconds += clock.total() - before;
 
   result.lights = found_lights(response, judged, optimum.lights);
