@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "inverse/solve/insertion.h"
+#include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -39,8 +40,7 @@ class Search {
   int most_lights() const { return options_.exact_lights > 0 ? options_.exact_lights : options_.max_lights; }
 
   bool out_of_time() {
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    out_of_time_ = out_of_time_ || (options_.time_limit > 0 && spent > options_.time_limit);
+    out_of_time_ = out_of_time_ || (options_.time_limit > 0 && renderer::seconds_since(start_) > options_.time_limit);
     return out_of_time_;
   }
 

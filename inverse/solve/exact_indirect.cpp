@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "inverse/transport/eigen_vectors.h"
+
 namespace chiaro::inverse {
 namespace {
 
@@ -11,7 +13,15 @@ constexpr int kPointsPerSample = 16;                 // gather points over rays
 constexpr std::size_t kPaths = 4000000;              // of all lights together …
 constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver
 
-Vec3f vec3f(const Eigen::Vector3d& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
+// Makes the light's indirect illumination indirect(receiver, channel), where it stands now.
+template <class Indirect>
+void set_correction(const LightResponse& response, LightEstimate& light, std::size_t receivers,
+                    const Indirect& indirect) {
+  light.correction = -response.interpolated_indirect(light.position);
+  for (std::size_t i = 0; i < receivers; ++i) {
+    for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(indirect(i, c));
+  }
+}
 
 GatherOptions gather_options(const BakeSettings& settings) {
   return {.samples = kSamplesFactor * settings.samples,
@@ -32,14 +42,11 @@ void ExactIndirect::correct(const LightResponse& response, LightEstimates& light
   for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
     const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
     std::vector<Vec3f> positions;
-    for (std::size_t l = 0; l < count; ++l) positions.push_back(vec3f(lights[first + l].position));
+    for (std::size_t l = 0; l < count; ++l) positions.push_back(to_vec3f(lights[first + l].position));
     const std::vector<LightBlock> exact = indirect_illumination(tracer_, gather_, positions);
     for (std::size_t l = 0; l < count; ++l) {
-      LightEstimate& light = lights[first + l];
-      light.correction = -response.interpolated_indirect(light.position);
-      for (std::size_t i = 0; i < exact.size(); ++i) {
-        for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(exact[i].channel[c][l]);
-      }
+      set_correction(response, lights[first + l], exact.size(),
+                     [&](std::size_t i, int c) { return exact[i].channel[c][l]; });
     }
   }
 }
@@ -49,17 +56,14 @@ void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimat
   std::iota(all.begin(), all.end(), std::size_t{0});
   for (LightEstimate& light : lights) {
     const std::vector<Vec3f> indirect = traced(response, all, light.position, kPaths / lights.size());
-    light.correction = -response.interpolated_indirect(light.position);
-    for (std::size_t i = 0; i < indirect.size(); ++i) {
-      for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(indirect[i][c]);
-    }
+    set_correction(response, light, indirect.size(), [&](std::size_t i, int c) { return indirect[i][c]; });
   }
 }
 
 std::vector<Vec3f> ExactIndirect::traced(const LightResponse& response, const std::vector<std::size_t>& receivers,
                                          const Eigen::Vector3d& position, std::size_t paths) const {
   renderer::PointLight unity;
-  unity.position = vec3f(position);
+  unity.position = to_vec3f(position);
   unity.intensity = {1, 1, 1};
   std::vector<renderer::SurfaceSample> samples;
   for (const std::size_t i : receivers) samples.push_back(response.receivers()[i]);

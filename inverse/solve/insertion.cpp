@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "inverse/transport/eigen_vectors.h"
+
 namespace chiaro::inverse {
 namespace {
 
@@ -14,18 +16,22 @@ constexpr Vec3f kDirections[] = {{0, 0, 1},           {.5F, 0, .87F},    {-.25F,
                                  {.87F, 0, .5F},      {.43F, .75F, .5F}, {-.43F, .75F, .5F},  {-.87F, 0, .5F},
                                  {-.43F, -.75F, .5F}, {.43F, -.75F, .5F}};
 
-// The candidate that explains most, or none.
-LightEstimates best_insertion(const Observations& residual, const LightEstimates& places,
-                              const std::vector<Column>& columns) {
-  LightEstimates best;
-  double best_gain = 0;
-  for (std::size_t j = 0; j < places.size(); ++j) {
-    LightEstimate place = places[j];
-    const double gain = fit_intensity(residual, columns[j], place);
-    if (gain > best_gain) best_gain = gain, best = {place};
+// The candidate so far that explains most, or none.
+class BestInsertion {
+ public:
+  explicit BestInsertion(const Observations& residual) : residual_(residual) {}
+
+  void consider(LightEstimate place, const Column& column) {
+    const double gain = fit_intensity(residual_, column, place);
+    if (gain > gain_) gain_ = gain, best_ = {std::move(place)};
   }
-  return best;
-}
+  void append_to(LightEstimates& lights) const { lights.insert(lights.end(), best_.begin(), best_.end()); }
+
+ private:
+  const Observations& residual_;
+  double gain_ = 0;
+  LightEstimates best_;
+};
 
 std::vector<std::size_t> darkest_receivers(const Observations& residual) {
   std::vector<std::pair<double, std::size_t>> lack;
@@ -51,17 +57,6 @@ LightEstimates direct_lights(const LightResponse& response, const std::vector<Ei
   return lights;
 }
 
-LightEstimates best_on_grid(const LightResponse& response, const Observations& residual) {
-  LightEstimates places;
-  std::vector<Column> columns;
-  for (std::size_t j = 0; j < response.grid().positions.size(); ++j) {
-    const Vec3f p = response.grid().positions[j];
-    places.push_back({{p.x, p.y, p.z}, Eigen::Array3d::Ones()});
-    columns.push_back(response.grid_column(j));
-  }
-  return best_insertion(residual, places, columns);
-}
-
 }  // namespace
 
 double fit_intensity(const Observations& observations, const Column& column, LightEstimate& light) {
@@ -81,7 +76,7 @@ std::vector<Eigen::Vector3d> places_in_front(const LightResponse& response, cons
     const renderer::Frame3f frame(at.normal);
     for (const Vec3f& direction : kDirections) {
       const Vec3f p = at.position + distance * frame.world_from_local(direction);
-      if (response.grid().region.contains(p)) places.emplace_back(p.x, p.y, p.z);
+      if (response.grid().region.contains(p)) places.push_back(to_eigen(p));
     }
   }
   return places;
@@ -96,9 +91,16 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
     const LightEstimates places =
         direct_lights(response, places_in_front(response, darkest, t * response.grid().region.diagonal()));
     const std::vector<Column> columns = evaluate_columns(response, places, VisibilitySource::kTraced);
-    for (const LightEstimate& best : best_insertion(residual, places, columns)) proposals.push_back(best);
+    BestInsertion in_front(residual);
+    for (std::size_t j = 0; j < places.size(); ++j) in_front.consider(places[j], columns[j]);
+    in_front.append_to(proposals);
   }
-  for (const LightEstimate& best : best_on_grid(response, residual)) proposals.push_back(best);
+  BestInsertion on_grid(residual);
+  const std::vector<Vec3f>& grid = response.grid().positions;
+  for (std::size_t j = 0; j < grid.size(); ++j) {
+    on_grid.consider({to_eigen(grid[j]), Eigen::Array3d::Ones()}, response.grid_column(j));
+  }
+  on_grid.append_to(proposals);
   return proposals;
 }
 

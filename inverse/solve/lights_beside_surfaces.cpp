@@ -6,6 +6,7 @@
 
 #include "inverse/numerics/nelder_mead.h"
 #include "inverse/solve/insertion.h"
+#include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -89,8 +90,7 @@ class SingleLight {
   LightEstimate find_near(const Eigen::Vector3d& position) {
     Place start{{position, Eigen::Array3d::Zero()}, 0, std::numeric_limits<double>::infinity()};
     for (const std::size_t i : brightest_) {
-      const Vec3f p = response_.receivers()[i].position;
-      start.distance = std::min(start.distance, (position - Eigen::Vector3d(p.x, p.y, p.z)).norm());
+      start.distance = std::min(start.distance, (position - to_eigen(response_.receivers()[i].position)).norm());
     }
     return calibrated(start);
   }
@@ -106,8 +106,8 @@ class SingleLight {
   }
 
   std::vector<Vec3f> gathered(const Eigen::Vector3d& position) const {
-    const Vec3f light{float(position.x()), float(position.y()), float(position.z())};
-    return indirect_illumination_at(exact_.tracer(), exact_.gather(), importance_, brightest_.size(), light);
+    return indirect_illumination_at(exact_.tracer(), exact_.gather(), importance_, brightest_.size(),
+                                    to_vec3f(position));
   }
 
   // What path tracing finds at a place, in parts of what gathering finds there, goes for all places near it.
@@ -163,12 +163,10 @@ class SingleLight {
       return place.misfit;
     };
     const Box3f region = response_.grid().region;
-    const Eigen::VectorXd lower = Eigen::Vector3d(region.min.x, region.min.y, region.min.z);
-    const Eigen::VectorXd upper = Eigen::Vector3d(region.max.x, region.max.y, region.max.z);
     numerics::NelderMeadOptions options;
     options.max_evaluations = kEvaluations;
-    numerics::nelder_mead(misfit, start.light.position, Eigen::VectorXd::Constant(3, kSimplex * start.distance), lower,
-                          upper, options);
+    numerics::nelder_mead(misfit, start.light.position, Eigen::VectorXd::Constant(3, kSimplex * start.distance),
+                          to_eigen(region.min), to_eigen(region.max), options);
     return best;
   }
 

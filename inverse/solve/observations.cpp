@@ -44,6 +44,13 @@ Observations with_capped_weights(const Observations& observations) {
   return capped;
 }
 
+Observations standing_for_all(const Observations& observations) {
+  Observations all = observations;
+  all.sqrt_weight.array() *= observations.stands_for.array().sqrt();
+  all.measure_target();
+  return all;
+}
+
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity) {
   return (observations.sqrt_weight.asDiagonal() * column * intensity.matrix().asDiagonal()).norm();
 }
@@ -94,9 +101,13 @@ std::vector<Column> evaluate_columns(const LightResponse& response, const LightE
   return columns;
 }
 
-Observations less(Observations observations, const LightResponse& response, const LightEstimates& lights) {
+Column illumination_of(const LightResponse& response, const LightEstimates& lights) {
   const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
-  observations.wanted -= total_illumination(columns, lights, observations.wanted.rows());
+  return total_illumination(columns, lights, Eigen::Index(response.receiver_count()));
+}
+
+Observations less(Observations observations, const LightResponse& response, const LightEstimates& lights) {
+  observations.wanted -= illumination_of(response, lights);
   return observations;
 }
 

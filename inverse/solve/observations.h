@@ -25,6 +25,9 @@ struct Observations {
 // to their brightness.
 Observations with_capped_weights(const Observations& observations);
 
+// The same with weights by which the important vertices stand for all receivers.
+Observations standing_for_all(const Observations& observations);
+
 // A light being sought.
 struct LightEstimate {
   Eigen::Vector3d position;  // metres
@@ -53,6 +56,9 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
 // Columns of all lights with their corrections, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      VisibilitySource visibility);
+
+// Of all lights together, by traced visibility and with their corrections.
+Column illumination_of(const LightResponse& response, const LightEstimates& lights);
 
 // With the light of these lights taken off what is wanted.
 Observations less(Observations observations, const LightResponse& response, const LightEstimates& lights);

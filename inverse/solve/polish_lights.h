@@ -12,7 +12,8 @@ struct PolishedLights {
 };
 
 // The last descent, without interpolation: indirect light is computed at the lights' very positions, and its difference
-// from the interpolated one is carried along as a constant while the lights are refined; again until they rest.
+// from the interpolated one is carried along as a constant while the lights are refined and settle across shadow
+// edges; again until they rest. By gathering first, and by path tracing where that leaves more than the noise.
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start);
 

@@ -1,6 +1,7 @@
 #include "inverse/solve/settle_positions.h"
 
 #include "inverse/numerics/nelder_mead.h"
+#include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -19,13 +20,12 @@ class Settling {
 
   void settle(std::size_t moved, double step) {
     const Box3f region = response_.grid().region;
-    const Eigen::VectorXd lower = Eigen::Vector3d(region.min.x, region.min.y, region.min.z);
-    const Eigen::VectorXd upper = Eigen::Vector3d(region.max.x, region.max.y, region.max.z);
     numerics::NelderMeadOptions options;
     options.max_evaluations = kEvaluations;
     options.restart = false;
     numerics::nelder_mead([&](const Eigen::VectorXd& position) { return error_with(moved, position); },
-                          best_.lights[moved].position, Eigen::VectorXd::Constant(3, step), lower, upper, options);
+                          best_.lights[moved].position, Eigen::VectorXd::Constant(3, step), to_eigen(region.min),
+                          to_eigen(region.max), options);
     columns_[moved] = column(moved, best_.lights[moved].position);
   }
 

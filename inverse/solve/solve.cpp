@@ -70,10 +70,8 @@ Column target_at(const Target& target, const std::vector<std::size_t>& chosen) {
   return column;
 }
 
-// By (3.6) over the important vertices as published; or, with `unbiased`, by weights with which the important vertices
-// stand for all receivers.
-Observations observe(const Target& target, const Importance& importance, const std::vector<Vec3f>& fixed,
-                     bool unbiased) {
+// By (3.6) over the important vertices as published.
+Observations observe(const Target& target, const Importance& importance, const std::vector<Vec3f>& fixed) {
   const std::vector<std::size_t>& chosen = importance.chosen;
   Observations o;
   const Column wanted = target_at(target, chosen);
@@ -81,9 +79,8 @@ Observations observe(const Target& target, const Importance& importance, const s
   o.sqrt_weight.resize(wanted.rows());
   o.stands_for.resize(wanted.rows());
   for (Eigen::Index i = 0; i < wanted.rows(); ++i) {
-    const double weight = double(target.weight[chosen[std::size_t(i)]]);
     o.stands_for[i] = 1 / importance.probability[std::size_t(i)];
-    o.sqrt_weight[i] = std::sqrt(unbiased ? weight * o.stands_for[i] : weight);
+    o.sqrt_weight[i] = std::sqrt(double(target.weight[chosen[std::size_t(i)]]));
     for (int c = 0; c < 3; ++c) o.wanted(i, c) -= double(fixed[std::size_t(i)][c]);
   }
   o.target = wanted;
@@ -141,14 +138,25 @@ struct Optimum {
   std::string termination;
 };
 
-Column illumination_of(const LightResponse& response, const LightEstimates& lights) {
-  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
-  return total_illumination(columns, lights, Eigen::Index(response.receiver_count()));
-}
-
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
   return some;
+}
+
+int most_lights(const SolveOptions& options) {
+  return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
+}
+
+// Without the lights that the last descent left with less than what anybody sees of them; one always stays.
+LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
+                                  const LightEstimates& lights) {
+  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  LightEstimates kept;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
+    if (norm > kNegligible * judged.target_norm) kept.push_back(lights[j]);
+  }
+  return kept.empty() ? lights : kept;
 }
 
 // Sections 3.4.2 and 3.4.3.
@@ -177,12 +185,16 @@ Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& respon
 
   const LightCountOptions count_options{options.max_lights - already, std::max(0, options.exact_lights - already),
                                         options.time_limit};
-  LightCountResult count = choose_light_count(response, remaining, tree, count_options);
+  const auto find_the_rest = [&] {
+    if (already >= most_lights(options)) return LightCountResult{};
+    return choose_light_count(response, remaining, tree, count_options);
+  };
+  LightCountResult count = find_the_rest();
   if (already > 0) {
     // What was found first was found beside the light of all others.
     beside_surfaces = refine_lights_beside_surfaces(response, exact, judged, beside_surfaces, count.lights);
     remaining = less(searched, response, beside_surfaces);
-    count = choose_light_count(response, remaining, tree, count_options);
+    count = find_the_rest();
   }
   StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}};
   for (std::size_t n = 0; n < count.error_curve.size(); ++n) {
@@ -194,26 +206,11 @@ Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& respon
   const Observations& last = beside_surfaces.empty() ? judged : remaining;
   const PolishedLights polished = polish_lights(exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  return {joined(beside_surfaces, polished.lights), start,
+  const LightEstimates all = joined(beside_surfaces, polished.lights);
+  return {options.exact_lights > 0 ? all : without_negligible(response, judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more"};
-}
-
-// Without the lights that the last descent left with less than what anybody sees of them; one always stays.
-LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
-                                  const LightEstimates& lights) {
-  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
-  LightEstimates kept;
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
-    if (norm > kNegligible * judged.target_norm) kept.push_back(lights[j]);
-  }
-  return kept.empty() ? lights : kept;
-}
-
-int most_lights(const SolveOptions& options) {
-  return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
 }
 
 int verification_samples(const SolveOptions& options, std::size_t receivers) {
@@ -257,14 +254,14 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
                                                 {"indirect_relative_error", transport.cache.indirect_relative_error}});
   const auto samples = select(problem.target.receivers.samples, importance.chosen);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, options, control);
-  const Observations published = observe(problem.target, importance, fixed, false);
+  const Observations published = observe(problem.target, importance, fixed);
   if (!(published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
   const LightResponse response(problem.tracer, samples, transport.cache);
   clock.finish("fixed_illumination", {});
 
   const bool joint = options.method == SolveMethod::kJoint;
-  const Observations judged = joint ? observe(problem.target, importance, fixed, true) : published;
+  const Observations judged = joint ? standing_for_all(published) : published;
   Observations searched = published;
   std::optional<ExactIndirect> exact;
   LightEstimates beside_surfaces;
@@ -287,9 +284,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const LightTree tree = make_light_tree(response, remaining, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
-  Optimum optimum = joint ? optimize_jointly(*exact, response, searched, judged, beside_surfaces, tree, options, clock)
-                          : optimize_as_published(response, published, tree, options, clock);
-  if (joint && options.exact_lights == 0) optimum.lights = without_negligible(response, judged, optimum.lights);
+  const Optimum optimum =
+      joint ? optimize_jointly(*exact, response, searched, judged, beside_surfaces, tree, options, clock)
+            : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
   result.lights = found_lights(response, judged, optimum.lights);

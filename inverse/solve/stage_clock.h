@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "inverse/solve/solve.h"
+#include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
 
@@ -19,7 +20,7 @@ class StageClock {
     stages_.push_back({name, seconds, std::move(figures)});
     return seconds;
   }
-  double total() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double total() const { return renderer::seconds_since(start_); }
   const std::vector<StageReport>& stages() const { return stages_; }
 
  private:

@@ -189,13 +189,20 @@ float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gath
   return sum / float(last - first);
 }
 
+// In parallel: body(first, last) for parts of 0 … count − 1.
+template <class Body>
+void for_each_chunk(std::size_t count, const Body& body) {
+  constexpr std::size_t kPoints = 1024;
+  renderer::parallel_for((count + kPoints - 1) / kPoints,
+                         [&](std::size_t chunk) { body(chunk * kPoints, std::min(count, (chunk + 1) * kPoints)); });
+}
+
 std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const GatherOperator& gather,
                                                 std::span<const Vec3f> lights) {
   std::vector<LightBlock> direct(gather.points.size());
-  constexpr std::size_t kPoints = 1024;
-  renderer::parallel_for((direct.size() + kPoints - 1) / kPoints, [&](std::size_t chunk) {
+  for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t l = 0; l < lights.size(); ++l) {
-      for (std::size_t i = chunk * kPoints; i < std::min(direct.size(), (chunk + 1) * kPoints); ++i) {
+      for (std::size_t i = first; i < last; ++i) {
         const auto seed = std::uint32_t(i * 0x9e3779b9U + l);
         const float value = direct_at_gather_point(tracer, gather, i, lights[l], seed);
         for (auto& channel : direct[i].channel) channel[l] = value;
@@ -270,8 +277,10 @@ std::vector<Vec3f> indirect_illumination_at(const RayTracer& tracer, const Gathe
                                             std::span<const LightBlock> importance, std::size_t receiver_count,
                                             Vec3f light) {
   std::vector<float> direct(gather.points.size());
-  renderer::parallel_for(direct.size(), [&](std::size_t i) {
-    direct[i] = direct_at_gather_point(tracer, gather, i, light, std::uint32_t(i * 0x9e3779b9U));
+  for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      direct[i] = direct_at_gather_point(tracer, gather, i, light, std::uint32_t(i * 0x9e3779b9U));
+    }
   });
   LightBlock sum;
   for (std::size_t i = 0; i < direct.size(); ++i) {

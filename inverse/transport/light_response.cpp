@@ -1,5 +1,6 @@
 #include "inverse/transport/light_response.h"
 
+#include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/gather_operator.h"
 #include "renderer/core/error.h"
 
@@ -9,9 +10,6 @@ namespace {
 using Eigen::Vector3d;
 using renderer::SurfaceSample;
 
-Vector3d eigen(Vec3f v) { return {double(v.x), double(v.y), double(v.z)}; }
-Vec3f vec3f(const Vector3d& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
-
 struct DirectTerm {
   double value;
   Vector3d gradient;
@@ -19,7 +17,7 @@ struct DirectTerm {
 
 // cosθ / (π d²) and its gradient in the light's position: with r = x − p, n·r / (π |r|³).
 DirectTerm direct_term(const SurfaceSample& at, const Vector3d& light) {
-  const Vector3d r = light - eigen(at.position), n = eigen(at.normal);
+  const Vector3d r = light - to_eigen(at.position), n = to_eigen(at.normal);
   const double projected = n.dot(r);
   if (projected <= 0) return {0, Vector3d::Zero()};
   const double d2 = r.squaredNorm(), scale = 1 / (EIGEN_PI * d2 * std::sqrt(d2));
@@ -72,7 +70,7 @@ std::vector<LightResponse::Weight> LightResponse::interpolation_weights(const Ve
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < grid.positions.size(); ++j) {
-      const double d = (eigen(grid.positions[j]) - position).squaredNorm();
+      const double d = (to_eigen(grid.positions[j]) - position).squaredNorm();
       if (d < least) least = d, nearest = j;
     }
     return {{nearest, 1, Vector3d::Zero()}};
@@ -87,7 +85,7 @@ std::vector<LightResponse::Weight> LightResponse::interpolation_weights(const Ve
 std::vector<double> LightResponse::visibility(const Vector3d& position, VisibilitySource source,
                                               const std::vector<Weight>& weights) const {
   std::vector<double> visible(receivers_.size(), 0);
-  const Vec3f light = vec3f(position);
+  const Vec3f light = to_vec3f(position);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     const SurfaceSample& at = receivers_[i];
     if (dot(light - at.position, at.normal) <= 0) continue;
@@ -120,7 +118,7 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const Vector3d& positio
     column.value.row(row).setConstant(visible[i] * direct.value);
     for (int a = 0; a < 3; ++a) column.gradient[a].row(row).setConstant(visible[i] * direct.gradient[a]);
     for (const Weight& w : weights) {
-      const Vector3d indirect = eigen(cache_.indirect[w.light * cache_.receiver_count + i]);
+      const Vector3d indirect = to_eigen(cache_.indirect[w.light * cache_.receiver_count + i]);
       column.value.row(row) += w.value * indirect.transpose();
       for (int a = 0; a < 3; ++a) column.gradient[a].row(row) += w.gradient[a] * indirect.transpose();
     }
@@ -133,7 +131,7 @@ Column LightResponse::indirect(const std::vector<Weight>& weights) const {
   for (const Weight& w : weights) {
     const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
-      column.row(Eigen::Index(i)) += w.value * eigen(indirect[i]).transpose();
+      column.row(Eigen::Index(i)) += w.value * to_eigen(indirect[i]).transpose();
     }
   }
   return column;
@@ -146,7 +144,7 @@ Column LightResponse::interpolated_indirect(const Vector3d& position) const {
 void LightResponse::add_direct(const Vector3d& position, const std::vector<double>& visible, Column& column) const {
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     if (visible[i] <= 0) continue;
-    const double direct = visible[i] * double(unoccluded_illumination(receivers_[i], vec3f(position)));
+    const double direct = visible[i] * double(unoccluded_illumination(receivers_[i], to_vec3f(position)));
     column.row(Eigen::Index(i)).array() += direct;
   }
 }
@@ -171,7 +169,7 @@ Column LightResponse::grid_column(std::size_t light) const {
     const double direct = cache_.visibility[entry] != 0
                               ? double(unoccluded_illumination(receivers_[i], cache_.grid.positions[light]))
                               : 0;
-    column.row(Eigen::Index(i)) = (Vector3d::Constant(direct) + eigen(cache_.indirect[entry])).transpose();
+    column.row(Eigen::Index(i)) = (Vector3d::Constant(direct) + to_eigen(cache_.indirect[entry])).transpose();
   }
   return column;
 }

@@ -85,6 +85,14 @@ TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
     EXPECT_LT(farthest_from(known, positions), 0.02 * corner.diagonal());
     EXPECT_LT(result.relative_l2, 0.05);
   }
+  // It counts among the lights allowed, and among those asked for.
+  const Target target = corner.target(known, 0);
+  SolveOptions one = quick();
+  one.max_lights = 1;
+  EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
+  one = quick();
+  one.exact_lights = 1;
+  EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
 }
 
 // What is left of the error when the noise of the target and of the evaluation is taken off.
