@@ -15,6 +15,8 @@ constexpr float kLeastAlpha = 1e-3F;  // a smaller one is a mirror to any eye an
 Bsdf::Bsdf(const SurfacePoint& point)
     : frame_(point.shading_normal),
       geometric_normal_(point.geometric_normal),
+      smooth_normal_(point.smooth_normal),
+      turned_(!(point.smooth_normal == point.shading_normal)),
       base_color_(point.base_color),
       metallic_(std::clamp(point.metallic, 0.0F, 1.0F)),
       alpha_(std::max(point.roughness * point.roughness, kLeastAlpha)),
@@ -22,10 +24,17 @@ Bsdf::Bsdf(const SurfacePoint& point)
 
 bool Bsdf::above_horizon(Vec3f direction) const { return dot(direction, geometric_normal_) > 0; }
 
+float Bsdf::shadow_terminator(Vec3f to_light) const {
+  if (!turned_) return 1;
+  const float g = dot(smooth_normal_, to_light) / (dot(frame_.normal, to_light) * dot(smooth_normal_, frame_.normal));
+  return g > 0 ? (g < 1 ? g * (1 + g - g * g) : 1) : 0;
+}
+
 Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
   if (wo.z <= 0 || wi.z <= 0 || !above_horizon(to_light)) return {};
-  if (lambert_) return (wi.z * kInvPi) * base_color_;
+  const float fade = shadow_terminator(to_light);
+  if (lambert_) return (fade * wi.z * kInvPi) * base_color_;
   const Vec3f h = normalize(wo + wi);
   const float weight = ggx::schlick_weight(dot(wo, h));
   const float specular = ggx::distribution(h.z, alpha_) * ggx::visibility(wo.z, wi.z, alpha_);
@@ -35,7 +44,8 @@ Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light) const {
   const float below_o = 1 - specular_albedo(wo.z, alpha_).at(kDielectricF0);
   const float below_i = 1 - specular_albedo(wi.z, alpha_).at(kDielectricF0);
   const float below_mean = 1 - mean_specular_albedo(alpha_).at(kDielectricF0);
-  const Vec3f dielectric = (below_o * below_i / below_mean * kInvPi) * base_color_ + Vec3f{1, 1, 1} * (fd * specular);
+  const Vec3f dielectric =
+      (fade * below_o * below_i / below_mean * kInvPi) * base_color_ + Vec3f{1, 1, 1} * (fd * specular);
   return wi.z * lerp(metallic_, dielectric, specular * fm);
 }
 
@@ -73,7 +83,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(Vec3f to_viewer, Vec2f u, float lobe) c
   if (lambert_) {
     if (!above_horizon(s.direction)) return std::nullopt;
     s.pdf = wi.z * kInvPi;
-    s.weight = base_color_;
+    s.weight = shadow_terminator(s.direction) * base_color_;
     return s.pdf > 0 ? std::optional(s) : std::nullopt;
   }
   s.pdf = pdf(to_viewer, s.direction);

@@ -7,6 +7,8 @@
 // one:
 //   diffuse = c/π (1 − E(θ_o)) (1 − E(θ_i)) / (1 − E_mean),  E: albedo of F_d S.
 // Source of the last: Kelemen & Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, 2001.
+// Where a normal map has turned the normal, diffuse light fades before the smooth surface turns away from it.
+// Source: Chiang, Li, Burley, Taming the Shadow Terminator, 2019.
 // Directions are unit and point away from the surface.
 
 #include <optional>
@@ -35,9 +37,12 @@ class Bsdf {
  private:
   float specular_probability(Vec3f to_viewer) const;
   bool above_horizon(Vec3f direction) const;
+  float shadow_terminator(Vec3f to_light) const;
 
   Frame3f frame_;
   Vec3f geometric_normal_;
+  Vec3f smooth_normal_;
+  bool turned_;  // the shading normal is another one
   Vec3f base_color_;
   float metallic_, alpha_;
   bool lambert_;

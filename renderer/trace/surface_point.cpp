@@ -76,21 +76,39 @@ Vec3f mapped_normal(const Locus& at, const Material& material, Vec3f object_norm
   return length_squared(n) > 0 ? normalize(n) : object_normal;
 }
 
-// A shading normal that faces away from the viewer is bent until the viewer is just above its horizon.
-Vec3f bend_towards(Vec3f normal, Vec3f to_viewer, Vec3f geometric_normal) {
-  constexpr float kLeast = 1e-3F;
-  const float c = dot(normal, to_viewer);
-  if (c >= kLeast) return normal;
-  const Vec3f bent = normal + (kLeast - c) * to_viewer;
-  const Vec3f n = length_squared(bent) > 1e-8F ? normalize(bent) : geometric_normal;
-  return dot(n, to_viewer) > 0 ? n : geometric_normal;
+// A shading normal about which the viewer's reflection would go into the surface is bent towards the geometric normal
+// until the reflection just leaves it.
+// Source: Keller et al., The Iray Light Transport Simulation and Rendering System, 2017, appendix A.3.
+Vec3f bend_for_reflection(Vec3f normal, Vec3f to_viewer, Vec3f geometric_normal) {
+  constexpr float kLeast = 0.01F;  // cosine of a reflection, unless the viewer's own is about as small
+  const float viewer_z = dot(to_viewer, geometric_normal);
+  const float least = std::min(kLeast, 0.9F * viewer_z);
+  const float normal_z = dot(normal, geometric_normal);
+  if (2 * dot(normal, to_viewer) * normal_z - viewer_z >= least) return normal;
+  // In the plane of both normals: n(φ) = cosφ Z + sinφ X reflects the viewer to the height A cos(2φ − δ).
+  const Vec3f across = normal - normal_z * geometric_normal;
+  if (!(length_squared(across) > 1e-12F)) return geometric_normal;
+  const Vec3f x = normalize(across);
+  const float viewer_x = dot(to_viewer, x), amplitude = std::hypot(viewer_x, viewer_z);
+  const float phi = 0.5F * (std::atan2(viewer_x, viewer_z) + std::acos(std::min(1.0F, least / amplitude)));
+  return normalize(std::cos(phi) * geometric_normal + std::sin(phi) * x);
 }
 
-Vec3f shading_normal(const Locus& at, const Material& material, const Mat4f& world_from_object, const Hit& hit) {
-  Vec3f n = interpolate(at.mesh.normals, at.triangle, at.u, at.v);
-  if (!(length_squared(n) > 0)) return hit.geometric_normal;
-  n = transform_normal(world_from_object, mapped_normal(at, material, normalize(n)));
-  return length_squared(n) > 0 ? n : hit.geometric_normal;
+struct ShadingNormals {
+  Vec3f smooth;  // of the vertices
+  Vec3f mapped;  // with the normal map
+};
+
+ShadingNormals shading_normals(const Locus& at, const Material& material, const Mat4f& world_from_object,
+                               const Hit& hit) {
+  const Vec3f n = interpolate(at.mesh.normals, at.triangle, at.u, at.v);
+  if (!(length_squared(n) > 0)) return {hit.geometric_normal, hit.geometric_normal};
+  const Vec3f object_normal = normalize(n);
+  Vec3f smooth = transform_normal(world_from_object, object_normal);
+  if (!(length_squared(smooth) > 0)) smooth = hit.geometric_normal;
+  if (material.normal_texture.texture < 0) return {smooth, smooth};
+  const Vec3f mapped = transform_normal(world_from_object, mapped_normal(at, material, object_normal));
+  return {smooth, length_squared(mapped) > 0 ? mapped : smooth};
 }
 
 using Corners = std::array<Vec3f, 3>;
@@ -154,13 +172,13 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
       surface_rounding(hit.instanced ? largest_term(at, instance.world_from_object) : largest_coordinate(corners),
                        circle_radius(corners));
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;
-  const float side = point.front ? 1.0F : -1.0F;
-  point.geometric_normal = side * hit.geometric_normal;
+  point.geometric_normal = (point.front ? 1.0F : -1.0F) * hit.geometric_normal;
   const Vec3f to_viewer = -normalize(ray.direction);
-  const Vec3f normal = shading_normal(at, material, instance.world_from_object, hit);
+  const ShadingNormals normals = shading_normals(at, material, instance.world_from_object, hit);
   // The side is the geometry's to decide: an interpolated normal may lean over the horizon of its triangle.
-  const float agrees = dot(normal, hit.geometric_normal) < 0 ? -side : side;
-  point.shading_normal = bend_towards(agrees * normal, to_viewer, point.geometric_normal);
+  const auto on_side = [&](Vec3f n) { return dot(n, point.geometric_normal) < 0 ? -n : n; };
+  point.smooth_normal = on_side(normals.smooth);
+  point.shading_normal = bend_for_reflection(on_side(normals.mapped), to_viewer, point.geometric_normal);
   point.base_color = base_color(at, material);
   point.lambert = material.lambert;
   point.metallic = material.metallic;

@@ -9,7 +9,8 @@ struct SurfacePoint {
   Vec3f position;
   float rounding = 0;      // metres; how far off the surface floats may have put it: for offset_point
   Vec3f geometric_normal;  // unit, on the side that the ray came from
-  Vec3f shading_normal;    // unit, never facing away from the ray
+  Vec3f smooth_normal;     // unit, the vertices' interpolated, on that side
+  Vec3f shading_normal;    // unit, with the normal map, bent where it would reflect the ray into the surface
   Vec3f base_color;        // linear
   float metallic = 0, roughness = 1;
   Vec3f emission;  // cd/m², from both sides

@@ -9,7 +9,7 @@ namespace {
 
 SurfacePoint flat_point(Vec3f color, float metallic, float roughness) {
   SurfacePoint point;
-  point.geometric_normal = point.shading_normal = {0, 0, 1};
+  point.geometric_normal = point.smooth_normal = point.shading_normal = {0, 0, 1};
   point.base_color = color;
   point.metallic = metallic;
   point.roughness = roughness;
@@ -20,7 +20,8 @@ const float kMaterials[][2] = {{0, 1}, {0, 0.3F}, {0.5F, 0.5F}, {1, 0.2F}, {1, 1
 const Vec3f kViewers[] = {{0, 0, 1}, normalize(Vec3f{1, 0, 1}), normalize(Vec3f{1, 0.3F, 0.2F})};
 
 TEST(Bsdf, DensityIntegratesToWhatSamplingKeeps) {
-  // ∫ pdf over the hemisphere = probability that sample() returns a direction; cosine-weighted quadrature of 2¹⁶ points.
+  // ∫ pdf over the hemisphere = probability that sample() returns a direction; cosine-weighted quadrature of 2¹⁶
+  // points.
   for (const auto& m : kMaterials) {
     for (const Vec3f& viewer : kViewers) {
       const Bsdf bsdf(flat_point({0.8F, 0.5F, 0.2F}, m[0], m[1]));
@@ -90,6 +91,22 @@ TEST(Bsdf, HemisphericalAlbedoIsTheMeanOfSampledWeights) {
     }
     EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.03);
   }
+}
+
+TEST(Bsdf, DiffuseLightFadesBeforeTheSmoothSurfaceTurnsAway) {
+  SurfacePoint point = flat_point({1, 1, 1}, 0, 1);
+  point.lambert = true;
+  point.shading_normal = normalize(Vec3f{1, 0, 1});
+  const Bsdf bsdf(point);
+  const Vec3f viewer{0, 0, 1}, above = normalize(Vec3f{-1, 0, 1.5F}), below = normalize(Vec3f{1, 0, 0.001F});
+  // Steeper to the turned normal than to the smooth one: all of it. On the smooth surface's horizon: almost nothing.
+  const float cosine = dot(above, point.shading_normal);
+  EXPECT_NEAR(bsdf.eval(viewer, above).x, cosine * kInvPi, 1e-6F);
+  EXPECT_LT(bsdf.eval(viewer, below).x, 0.005F * dot(below, point.shading_normal) * kInvPi);
+  // In between g (1 + g − g²), with g the ratio of the cosines.
+  const Vec3f between = normalize(Vec3f{1, 0, 0.5F});
+  const float c = dot(between, point.shading_normal), g = between.z / (c * point.shading_normal.z);
+  EXPECT_NEAR(bsdf.eval(viewer, between).x, c * kInvPi * g * (1 + g - g * g), 1e-6F);
 }
 
 }  // namespace

@@ -108,13 +108,17 @@ TEST(SurfacePoint, NormalMapsFollowTheirInstance) {
   expect_near(seen(scene, {-0.3F, 0, 0.6F}, {0, -1, 0}).shading_normal, {-0.6F, 0.8F, 0}, 0.01F);
 }
 
-TEST(SurfacePoint, ShadingNormalNeverFacesAwayFromTheRay) {
+TEST(SurfacePoint, ShadingNormalReflectsTheRayOffTheSurface) {
   const Scene scene = square_scene(normal_mapped(1), {one_texel(250, 128, 150)});
   for (const float slope : {-3.0F, -0.5F, -0.1F, -0.02F, 0.02F, 0.1F, 0.5F, 3.0F}) {
     for (const float along : {-1.0F, 1.0F}) {
       const Vec3f direction = normalize(Vec3f{along, slope, 0.3F});
       const SurfacePoint point = seen(scene, {0.3F, 0, 0.6F}, direction);
       EXPECT_GT(dot(point.shading_normal, -direction), 0) << slope;
+      // The ray, reflected about it, leaves the surface.
+      const Vec3f reflected = 2 * dot(point.shading_normal, -direction) * point.shading_normal + direction;
+      const float cosine = dot(point.geometric_normal, -direction);
+      EXPECT_GE(dot(point.geometric_normal, reflected), std::min(0.01F, 0.9F * cosine) - 1e-5F) << slope;
       EXPECT_GT(dot(point.geometric_normal, -direction), 0) << slope;
       EXPECT_NEAR(length(point.shading_normal), 1, 1e-5F);
     }
