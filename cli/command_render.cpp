@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -37,9 +38,15 @@ void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, 
 }
 
 void save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
-  const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common, frame.samples);
+  const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common);
   save_frame(frame, camera, options.output, origin, options.frame);
   if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame.view);
+}
+
+std::string text_of_samples(const renderer::Frame& frame) {
+  const std::string most = fmt::format("{} per pixel", frame.samples);
+  if (frame.mean_samples == frame.samples) return most;
+  return fmt::format("{:.1f} per pixel, {} at most", frame.mean_samples, frame.samples);
 }
 
 std::vector<std::string> written_files(const RenderCommand& options) {
@@ -57,10 +64,16 @@ void print_summary(Session& session, const RenderCommand& options, const rendere
   summary.emplace_back("written", json_list(written));
   session.finish(summary, aligned_rows({{"camera", camera.name},
                                         {"size", fmt::format("{} x {} pixels", frame.image.width, frame.image.height)},
-                                        {"samples", fmt::format("{} per pixel", frame.samples)},
+                                        {"samples", text_of_samples(frame)},
                                         {"relative standard error", text_of_percent(frame.relative_standard_error)},
                                         {"time", text_of_seconds(frame.seconds)},
                                         {"written", fmt::format("{}", fmt::join(written, ", "))}}));
+}
+
+// In one line, as every command that is interrupted.
+int interrupted_with(const std::string& output) {
+  std::fprintf(stderr, "chiaro: interrupted: %s has the samples so far\n", output.c_str());
+  return kInterrupted;
 }
 
 int run_render(const RenderCommand& options) {
@@ -70,13 +83,12 @@ int run_render(const RenderCommand& options) {
   const renderer::Lights lights = choose_lights(stage, options.lights);
   warn_of_darkness(stage, lights, session);
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
-  const renderer::Frame frame = renderer::render(*stage.tracer, camera, lights,
-                                                 render_options(options.frame, frame_size(camera, options.frame.size),
-                                                                trace_options(options.transport, options.common)),
-                                                 session.control());
+  const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
+                                             {trace_options(options.transport, options.common), session.control()});
   save_outputs(options, camera, frame);
+  warn_of_frame(frame, options.output, session);
   print_summary(session, options, camera, frame);
-  return kDone;
+  return frame.interrupted ? interrupted_with(options.output) : kDone;
 }
 
 }  // namespace

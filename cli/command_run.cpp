@@ -15,6 +15,7 @@
 #include "cli/text_output.h"
 #include "inverse/transport/bake.h"
 #include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
 
 namespace chiaro::cli {
 namespace {
@@ -65,11 +66,11 @@ JsonObject render_camera(const RunCommand& options, const LoadedStage& stage, co
                          const renderer::Lights& lights, const std::filesystem::path& file, Session& session) {
   TransportOptions transport = options.choices.transport;
   transport.samples = options.frame_samples;
-  const auto frame = renderer::render(
-      *stage.tracer, camera, lights,
-      render_options(options.frame, frame_size(camera, options.frame.size), trace_options(transport, options.common)),
-      session.control());
-  const FrameOrigin origin = frame_origin(options.scene, transport, options.common, frame.samples);
+  const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
+                                             {trace_options(transport, options.common), session.control()});
+  if (frame.interrupted) throw renderer::Interruption();
+  warn_of_frame(frame, camera.name, session);
+  const FrameOrigin origin = frame_origin(options.scene, transport, options.common);
   save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
   save_preview(frame.image, beside(file, ".png"), options.frame.view);
   return frame_summary(frame, camera.name);

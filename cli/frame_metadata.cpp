@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/common_options.h"
 
@@ -72,10 +73,24 @@ renderer::Attributes frame_attributes(const renderer::Camera& camera, double fra
       {"chiaro:scene", origin.scene},
       {"chiaro:camera", camera.name},
       {"chiaro:materials", origin.materials},
-      {"chiaro:samples", origin.samples},
       {"chiaro:bounces", origin.bounces},
       {"chiaro:seed", fmt::format("{}", origin.seed)},
   };
+}
+
+void add_matte_attributes(renderer::Attributes& attributes, const std::vector<renderer::Matte>& mattes) {
+  for (const renderer::Matte& matte : mattes) {
+    nlohmann::ordered_json manifest = nlohmann::ordered_json::object();
+    for (const auto& [name, id] : matte.manifest) manifest[name] = fmt::format("{:08x}", id);
+    const std::string key =
+        "cryptomatte/" + fmt::format("{:08x}", renderer::murmur_hash_3_32(matte.layer)).substr(0, 7);
+    attributes.emplace_back(key + "/name", matte.layer);
+    attributes.emplace_back(key + "/hash", std::string("MurmurHash3_32"));
+    attributes.emplace_back(key + "/conversion", std::string("uint32_to_float32"));
+    // Names are as the scene has them, and bytes that are no UTF-8 cannot stand in JSON.
+    attributes.emplace_back(key + "/manifest",
+                            manifest.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  }
 }
 
 }  // namespace chiaro::cli

@@ -5,6 +5,7 @@
 
 #include "renderer/image/image_file.h"
 #include "renderer/scene/scene.h"
+#include "renderer/trace/cryptomatte.h"
 
 namespace chiaro::cli {
 
@@ -13,7 +14,6 @@ struct FrameOrigin {
   std::string scene;  // file name
   std::string materials;
   std::uint64_t seed = 0;
-  int samples = 0;
   int bounces = -1;
 };
 
@@ -29,5 +29,8 @@ std::array<float, 16> row_vector_matrix(const renderer::Mat4f& matrix);
 // worldToCamera, worldToNDC, whiteLuminance, and ours under "chiaro:". Chromaticities are the caller's.
 renderer::Attributes frame_attributes(const renderer::Camera& camera, double frame_aspect_ratio,
                                       const FrameOrigin& origin);
+
+// Name, hash, conversion and manifest of each matte layer, under the keys of the Cryptomatte specification.
+void add_matte_attributes(renderer::Attributes& attributes, const std::vector<renderer::Matte>& mattes);
 
 }  // namespace chiaro::cli

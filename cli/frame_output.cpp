@@ -21,9 +21,24 @@ bool parse_filter(const std::string& text) {
   throw UsageError(fmt::format("'{}' (expected blackman-harris or box)", text));
 }
 
-// Layers that are not colours: geometry, and the square of a colour.
+// Layers that are not colours: geometry, identifiers, and the square of a colour.
 bool is_color_layer(const std::string& layer) {
-  return layer != "normal" && layer != "position" && layer != "depth" && layer != "variance";
+  return layer != "normal" && layer != "position" && layer != "depth" && layer != "variance" &&
+         !layer.starts_with("Crypto");
+}
+
+// Halves keep neither identifiers nor large numbers of samples, nor metres to the millimetre, nor small variances.
+bool needs_float(const std::string& channel) {
+  return channel.starts_with("Crypto") || channel.starts_with("samples.") || channel.starts_with("variance.") ||
+         channel.starts_with("depth.") || channel.starts_with("position.");
+}
+
+renderer::ChannelTypes channel_types(const Image& frame, bool full_float) {
+  renderer::ChannelTypes types;
+  for (const std::string& name : frame.channel_names) {
+    types.push_back(full_float || needs_float(name) ? renderer::PixelType::kFloat : renderer::PixelType::kHalf);
+  }
+  return types;
 }
 
 void convert_to_output_space(Image& image, const FrameOptions& options) {
@@ -44,6 +59,20 @@ void add_chromaticities(renderer::Attributes& attributes, const FrameOptions& op
   }
 }
 
+// What decides how good the frame is, and the lens.
+void add_attributes(renderer::Attributes& attributes, const renderer::Frame& frame, const FrameOptions& options) {
+  attributes.emplace_back("chiaro:samples", frame.samples);
+  attributes.emplace_back("chiaro:mean_samples", float(frame.mean_samples));
+  attributes.emplace_back("chiaro:relative_standard_error", float(frame.relative_standard_error));
+  if (options.noise_threshold > 0) attributes.emplace_back("chiaro:noise_threshold", float(options.noise_threshold));
+  if (options.clamp_direct) attributes.emplace_back("chiaro:clamp_direct", *options.clamp_direct);
+  if (options.clamp_indirect) attributes.emplace_back("chiaro:clamp_indirect", *options.clamp_indirect);
+  if (frame.dropped_samples > 0) attributes.emplace_back("chiaro:dropped_samples", float(frame.dropped_samples));
+  if (frame.interrupted) attributes.emplace_back("chiaro:interrupted", 1);
+  if (options.lens.f_number) attributes.emplace_back("aperture", *options.lens.f_number);
+  if (frame.lens.radius > 0) attributes.emplace_back("focus", frame.lens.focus_distance);
+}
+
 }  // namespace
 
 void add_frame_options(CLI::App& command, FrameOptions& options) {
@@ -56,6 +85,14 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
   add_flag(command, "--float", options.full_float, "32-bit floats instead of 16-bit ones");
   add_parsed(command, {"--filter", "NAME", "blackman-harris or box (default blackman-harris)"},
              [&options](const std::string& text) { options.box_filter = parse_filter(text); });
+  add_number(command,
+             {"--noise-threshold", "E",
+              "Sample until every 8 x 8 pixels' standard error is E of their mean; --samples is then the most"},
+             options.noise_threshold, kPositive);
+  add_number(command, {"--clamp-direct", "L", "Most cd/m² of a sample's direct light, which biases (default: none)"},
+             options.clamp_direct, kPositive);
+  add_number(command, {"--clamp-indirect", "L", "The same of indirect light"}, options.clamp_indirect, kPositive);
+  add_lens_options(command, options.lens);
   add_text(command, {"--output-space", "NAME", "Scene-linear colour space of the EXR (default: Rec.709)"},
            options.output_space);
   add_view_options(command, options.view);
@@ -68,14 +105,20 @@ void require_color_choices(const FrameOptions& options, bool preview) {
   convert_to_output_space(pixel, options);
 }
 
-renderer::RenderOptions render_options(const FrameOptions& options, std::array<int, 2> size,
-                                       const renderer::TraceOptions& trace) {
-  return {.width = size[0],
-          .height = size[1],
-          .trace = trace,
-          .time_limit = options.time_limit,
-          .box_filter = options.box_filter,
-          .layers = options.layers};
+renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,
+                             const renderer::Lights& lights, const FrameOptions& options, const FrameRun& run) {
+  const std::array<int, 2> size = frame_size(camera, options.size);
+  const renderer::RenderOptions render_options{.width = size[0],
+                                               .height = size[1],
+                                               .trace = run.trace,
+                                               .time_limit = options.time_limit,
+                                               .noise_threshold = options.noise_threshold,
+                                               .clamp_direct = options.clamp_direct.value_or(renderer::kInfinity),
+                                               .clamp_indirect = options.clamp_indirect.value_or(renderer::kInfinity),
+                                               .box_filter = options.box_filter,
+                                               .lens = lens_of(options.lens, camera, tracer),
+                                               .layers = options.layers};
+  return renderer::render(tracer, camera, lights, render_options, run.control);
 }
 
 std::vector<std::string> color_layers(const Image& frame) {
@@ -89,12 +132,10 @@ std::vector<std::string> color_layers(const Image& frame) {
   return layers;
 }
 
-FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common,
-                         int samples) {
+FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common) {
   return {.scene = std::filesystem::path(scene).filename().string(),
           .materials = text_of_materials(transport.materials),
           .seed = common.seed,
-          .samples = samples,
           .bounces = transport.bounces.value_or(-1)};
 }
 
@@ -102,8 +143,10 @@ void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, co
                 const FrameOrigin& origin, const FrameOptions& options) {
   const double aspect_ratio = double(frame.image.width) / frame.image.height;
   renderer::Attributes attributes = frame_attributes(camera, aspect_ratio, origin);
+  add_attributes(attributes, frame, options);
+  add_matte_attributes(attributes, frame.mattes);
   add_chromaticities(attributes, options);
-  const auto type = options.full_float ? renderer::PixelType::kFloat : renderer::PixelType::kHalf;
+  const renderer::ChannelTypes type = channel_types(frame.image, options.full_float);
   if (options.output_space.empty()) {
     renderer::save_image(frame.image, path, type, attributes);
     return;
@@ -111,6 +154,11 @@ void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, co
   Image converted = frame.image;
   convert_to_output_space(converted, options);
   renderer::save_image(converted, path, type, attributes);
+}
+
+void warn_of_frame(const renderer::Frame& frame, const std::string& name, Session& session) {
+  if (frame.dropped_samples == 0) return;
+  session.warn(fmt::format("{}: {} samples were not finite and are left black", name, frame.dropped_samples));
 }
 
 void save_preview(const Image& frame, const std::filesystem::path& path, const ViewChoice& view) {
@@ -123,7 +171,10 @@ JsonObject frame_summary(const renderer::Frame& frame, const std::string& camera
           {"height", frame.image.height},
           {"channels", json_list(frame.image.channel_names)},
           {"samples", frame.samples},
+          {"mean_samples", frame.mean_samples},
           {"relative_standard_error", frame.relative_standard_error},
+          {"dropped_samples", std::int64_t(frame.dropped_samples)},
+          {"interrupted", frame.interrupted},
           {"seconds", frame.seconds}};
 }
 

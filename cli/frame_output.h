@@ -8,6 +8,7 @@
 #include "cli/camera_choice.h"
 #include "cli/frame_metadata.h"
 #include "cli/json_output.h"
+#include "cli/lens_options.h"
 #include "cli/transport_options.h"
 #include "cli/view_options.h"
 #include "renderer/image/image_file.h"
@@ -17,7 +18,10 @@ namespace chiaro::cli {
 
 struct FrameOptions {
   FrameSize size;
-  double time_limit = 0;  // seconds; 0: none
+  double time_limit = 0;                              // seconds; 0: none
+  double noise_threshold = 0;                         // 0: none
+  std::optional<float> clamp_direct, clamp_indirect;  // cd/m²
+  LensOptions lens;
   std::vector<std::string> layers;
   bool full_float = false;
   bool box_filter = false;
@@ -25,16 +29,25 @@ struct FrameOptions {
   ViewChoice view;
 };
 
+// How a frame is traced, whatever it looks like.
+struct FrameRun {
+  renderer::TraceOptions trace;
+  const renderer::Control& control;
+};
+
 void add_frame_options(CLI::App& command, FrameOptions& options);
 
 // Error where the colour spaces, displays or views asked for do not exist.
 void require_color_choices(const FrameOptions& options, bool preview);
 
-renderer::RenderOptions render_options(const FrameOptions& options, std::array<int, 2> size,
-                                       const renderer::TraceOptions& trace);
+// The frame as the options want it.
+renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,
+                             const renderer::Lights& lights, const FrameOptions& options, const FrameRun& run);
 
-FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common,
-                         int samples);
+FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common);
+
+// What is to be said of a frame besides its figures.
+void warn_of_frame(const renderer::Frame& frame, const std::string& name, Session& session);
 
 // Writes the frame as EXR with all of its attributes.
 void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,

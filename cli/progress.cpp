@@ -40,6 +40,10 @@ std::string progress_line(std::string_view stage, double fraction, double second
   return line.substr(0, std::size_t(std::max(columns - 1, 0)));
 }
 
+std::string noise_text(double relative_standard_error) {
+  return relative_standard_error > 0 ? fmt::format("  noise {:.2g} %", 100 * relative_standard_error) : "";
+}
+
 ProgressBar::ProgressBar(bool wanted) : shown_(wanted && ::isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() { clear(); }
@@ -51,12 +55,15 @@ void ProgressBar::update(std::string_view stage, double fraction) {
   if (new_stage) {
     stage_ = stage;
     stage_start_ = now;
+    noise_ = 0;
   } else if (seconds_between(last_drawn_, now) < kSecondsBetweenDrawings) {
     return;
   }
   last_drawn_ = now;
   drawn_ = true;
-  const std::string line = progress_line(stage, fraction, seconds_between(stage_start_, now), terminal_columns());
+  const std::string noise = noise_text(noise_);
+  const int columns = terminal_columns() - int(noise.size());
+  const std::string line = progress_line(stage, fraction, seconds_between(stage_start_, now), columns) + noise;
   std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
   std::fflush(stderr);
 }

@@ -10,6 +10,9 @@ namespace chiaro::cli {
 // from the seconds the stage has taken.
 std::string progress_line(std::string_view stage, double fraction, double seconds, int columns);
 
+// How noisy the result is so far, after the line.
+std::string noise_text(double relative_standard_error);
+
 // A progress bar on standard error, redrawn in place.
 class ProgressBar {
  public:
@@ -21,6 +24,8 @@ class ProgressBar {
 
   bool shown() const { return shown_; }
   void update(std::string_view stage, double fraction);
+  // Shown behind the time left until the next stage begins.
+  void set_noise(double relative_standard_error) { noise_ = relative_standard_error; }
   void clear();
 
  private:
@@ -28,6 +33,7 @@ class ProgressBar {
   bool shown_;
   bool drawn_ = false;
   std::string stage_;
+  double noise_ = 0;  // 0: not known
   Clock::time_point stage_start_, last_drawn_;
 };
 

@@ -5,6 +5,7 @@
 #include "renderer/core/error.h"
 #include "renderer/io/light_file.h"
 #include "renderer/io/load_gltf.h"
+#include "renderer/scene/texture_mip_maps.h"
 
 namespace chiaro::cli {
 
@@ -16,8 +17,10 @@ LoadedStage load_stage(const std::string& path, const MaterialOptions& materials
     throw renderer::Error({path, "", "has no triangles", "a scene with surfaces"});
   }
   LoadedStage stage;
-  stage.scene = std::make_unique<const renderer::Scene>(
+  auto scene = std::make_unique<renderer::Scene>(
       renderer::with_materials(std::move(loaded.scene), material_override(materials)));
+  renderer::make_mip_maps(*scene);
+  stage.scene = std::move(scene);
   stage.lights = std::move(loaded.lights);
   stage.tracer = std::make_unique<const renderer::RayTracer>(*stage.scene);
   session.stop_if_interrupted();

@@ -17,6 +17,7 @@ Session::Session(const CommonOptions& options)
   control_.interrupted = &interruption_flag();
   if (progress_.shown()) {
     control_.report = [this](std::string_view stage, double fraction) { progress_.update(stage, fraction); };
+    control_.report_noise = [this](double error) { progress_.set_noise(error); };
   }
 }
 

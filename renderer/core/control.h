@@ -11,6 +11,8 @@ namespace chiaro::renderer {
 struct Control {
   // Called now and then, from any thread but never from two at once: the stage and the fraction of it done, 0 to 1.
   std::function<void(std::string_view stage, double fraction)> report;
+  // Called between the passes of a stage that knows how noisy its result is: relative standard error.
+  std::function<void(double relative_standard_error)> report_noise;
   // Set by a signal handler; stages look at it often and throw Interruption.
   const std::atomic<bool>* interrupted = nullptr;
 

@@ -120,8 +120,11 @@ OIIO::TypeDesc type_desc(PixelType type) {
   return type == PixelType::kUint8 ? OIIO::TypeUInt8 : type == PixelType::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat;
 }
 
-OIIO::ImageSpec spec_of(const Image& image, PixelType type, const Attributes& attributes) {
-  OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), type_desc(type));
+OIIO::ImageSpec spec_of(const Image& image, const ChannelTypes& types, const Attributes& attributes) {
+  OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), type_desc(types.front()));
+  if (std::any_of(types.begin(), types.end(), [&](PixelType type) { return type != types.front(); })) {
+    for (const PixelType type : types) spec.channelformats.push_back(type_desc(type));
+  }
   spec.channelnames = image.channel_names;
   spec.alpha_channel = image.find_channel("A");
   spec["oiio:UnassociatedAlpha"] = 1;
@@ -137,10 +140,14 @@ OIIO::ImageSpec spec_of(const Image& image, PixelType type, const Attributes& at
 }
 
 // What halves cannot hold would become infinite.
-std::vector<float> clamped_to_half(const std::vector<float>& pixels) {
-  std::vector<float> clamped(pixels.size());
-  std::transform(pixels.begin(), pixels.end(), clamped.begin(),
-                 [](float v) { return std::isfinite(v) ? std::clamp(v, -kMaxHalf, kMaxHalf) : v; });
+std::vector<float> clamped_to_half(const std::vector<float>& pixels, const OIIO::ImageSpec& spec) {
+  std::vector<float> clamped = pixels;
+  for (int c = 0; c < spec.nchannels; ++c) {
+    if (spec.channelformat(c) != OIIO::TypeHalf) continue;
+    for (std::size_t i = std::size_t(c); i < clamped.size(); i += std::size_t(spec.nchannels)) {
+      if (std::isfinite(clamped[i])) clamped[i] = std::clamp(clamped[i], -kMaxHalf, kMaxHalf);
+    }
+  }
   return clamped;
 }
 
@@ -157,8 +164,8 @@ void check_channels(const Image& image, const std::filesystem::path& path, const
 
 void write(const Image& image, const std::filesystem::path& aside, const OIIO::ImageSpec& spec,
            OIIO::ImageOutput& output) {
-  const bool half = spec.format == OIIO::TypeHalf;
-  const std::vector<float> clamped = half ? clamped_to_half(image.pixels) : std::vector<float>{};
+  const bool half = spec.format == OIIO::TypeHalf || !spec.channelformats.empty();
+  const std::vector<float> clamped = half ? clamped_to_half(image.pixels, spec) : std::vector<float>{};
   const float* pixels = half ? clamped.data() : image.pixels.data();
   const bool written = output.open(aside.string(), spec) && output.write_image(OIIO::TypeFloat, pixels);
   if (!output.close() || !written) {
@@ -183,13 +190,19 @@ ImageFile load_image(const std::filesystem::path& path) {
 }
 
 void save_image(const Image& image, const std::filesystem::path& path, PixelType type, const Attributes& attributes) {
+  save_image(image, path, ChannelTypes(image.channel_names.size(), type), attributes);
+}
+
+void save_image(const Image& image, const std::filesystem::path& path, const ChannelTypes& types,
+                const Attributes& attributes) {
   const auto output = OIIO::ImageOutput::create(path.string());
   if (!output) {
     OIIO::geterror();
     throw Error({path.string(), "", "no image format has this extension", ".exr, .png, .tif, .jpg …"});
   }
   check_channels(image, path, *output);
-  const OIIO::ImageSpec spec = spec_of(image, type, attributes);
+  CHIARO_CHECK(types.size() == image.channel_names.size());
+  const OIIO::ImageSpec spec = spec_of(image, types, attributes);
   write_atomically(path, [&](const std::filesystem::path& aside) {
     try {
       write(image, aside, spec, *output);

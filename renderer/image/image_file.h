@@ -34,7 +34,12 @@ ImageFile load_image_header(const std::filesystem::path& path);
 
 enum class PixelType : std::uint8_t { kUint8, kHalf, kFloat };
 
-// By the extension of `path` (.exr, .png, .tif, .jpg …), whole or not at all (atomic_file.h). EXR: ZIP compressed.
+using ChannelTypes = std::vector<PixelType>;  // of each channel
+
+// By the extension of `path` (.exr, .png, .tif, .jpg …), whole or not at all (atomic_file.h). EXR: ZIP compressed, and
+// channels may have types of their own.
+void save_image(const Image& image, const std::filesystem::path& path, const ChannelTypes& types,
+                const Attributes& attributes = {});
 void save_image(const Image& image, const std::filesystem::path& path, PixelType type,
                 const Attributes& attributes = {});
 

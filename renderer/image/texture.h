@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,19 @@ struct Texture {
   std::vector<std::uint8_t> rgba;  // 4 * width * height
   bool nearest = false;            // magnification filter
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  std::vector<std::vector<std::uint8_t>> mips;  // RGBA of levels 1, 2, …; empty: none are made (mip_maps.h)
 };
+
+struct MipLevel {
+  int width = 0, height = 0;
+  const std::uint8_t* texels = nullptr;  // RGBA
+};
+
+// The level, or the smallest there is. Level 0 is the texture itself.
+inline MipLevel mip_level(const Texture& texture, int level) {
+  if (level <= 0 || texture.mips.empty()) return {texture.width, texture.height, texture.rgba.data()};
+  const int k = std::min(level, int(texture.mips.size()));
+  return {std::max(1, texture.width >> k), std::max(1, texture.height >> k), texture.mips[k - 1].data()};
+}
 
 }  // namespace chiaro::renderer

@@ -22,7 +22,11 @@ Bsdf::Bsdf(const SurfacePoint& point)
       alpha_(std::max(point.roughness * point.roughness, kLeastAlpha)),
       lambert_(point.lambert) {}
 
-bool Bsdf::above_horizon(Vec3f direction) const { return dot(direction, geometric_normal_) > 0; }
+bool Bsdf::above_triangle(Vec3f direction) const { return dot(direction, geometric_normal_) > 0; }
+
+bool Bsdf::above_horizon(Vec3f direction) const {
+  return above_triangle(direction) || dot(direction, smooth_normal_) > 0;
+}
 
 float Bsdf::shadow_terminator(Vec3f to_light) const {
   if (!turned_) return 1;
@@ -60,7 +64,7 @@ float Bsdf::specular_probability(Vec3f wo) const {
 
 float Bsdf::pdf(Vec3f to_viewer, Vec3f to_light) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
-  if (wo.z <= 0 || wi.z <= 0) return 0;
+  if (wo.z <= 0 || wi.z <= 0 || !above_triangle(to_light)) return 0;
   const float specular = specular_probability(wo);
   float pdf = (1 - specular) * wi.z * kInvPi;
   if (specular > 0) pdf += specular * ggx::reflection_pdf(wo, normalize(wo + wi), alpha_);
@@ -81,7 +85,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(Vec3f to_viewer, Vec2f u, float lobe) c
   Sample s;
   s.direction = normalize(frame_.world_from_local(wi));
   if (lambert_) {
-    if (!above_horizon(s.direction)) return std::nullopt;
+    if (!above_triangle(s.direction)) return std::nullopt;
     s.pdf = wi.z * kInvPi;
     s.weight = shadow_terminator(s.direction) * base_color_;
     return s.pdf > 0 ? std::optional(s) : std::nullopt;

@@ -22,9 +22,10 @@ class Bsdf {
   explicit Bsdf(const SurfacePoint& point);
   Vec3f normal() const { return frame_.normal; }  // shading normal
 
-  // f · cosθ_i, per channel; zero below either horizon.
+  // f · cosθ_i, per channel; zero below the shading normal's horizon, and where the light is below both the triangle's
+  // and the smooth surface's that vertex normals stand for.
   Vec3f eval(Vec3f to_viewer, Vec3f to_light) const;
-  // Density of sample(), per steradian.
+  // Density of sample(), per steradian. Nothing below the triangle's horizon is sampled: rays would meet the triangle.
   float pdf(Vec3f to_viewer, Vec3f to_light) const;
 
   struct Sample {
@@ -36,6 +37,7 @@ class Bsdf {
 
  private:
   float specular_probability(Vec3f to_viewer) const;
+  bool above_triangle(Vec3f direction) const;
   bool above_horizon(Vec3f direction) const;
   float shadow_terminator(Vec3f to_light) const;
 

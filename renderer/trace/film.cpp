@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numeric>
 #include <set>
 
 #include "renderer/core/error.h"
@@ -24,16 +26,19 @@ void add3(double* sums, Vec3f v) {
   for (int c = 0; c < 3; ++c) sums[c] += double(v[c]);
 }
 
+Vec3f mean_of(const float* sums, int samples) { return Vec3f{sums[0], sums[1], sums[2]} / float(samples); }
+
 }  // namespace
 
 const std::vector<std::string>& frame_layers() {
-  static const std::vector<std::string> names{"albedo",   "normal",       "position", "depth", "direct",
-                                              "indirect", "illumination", "variance", "lights"};
+  static const std::vector<std::string> names{"albedo",  "normal",   "position",     "depth",
+                                              "direct",  "indirect", "illumination", "variance",
+                                              "samples", "lights",   "cryptomatte"};
   return names;
 }
 
-Film::Film(int width, int height, const std::vector<std::string>& layers, const Lights& lights)
-    : width_(width), height_(height), names_{"R", "G", "B", "A"} {
+Film::Film(int width, int height, const std::vector<std::string>& layers, const Lights& lights, int samples)
+    : width_(width), height_(height), samples_(samples), names_{"R", "G", "B", "A"} {
   const auto add_layer = [&](const std::string& name, std::initializer_list<const char*> channels) {
     const int first = int(names_.size());
     for (const char* channel : channels) names_.push_back(name + "." + channel);
@@ -56,28 +61,55 @@ Film::Film(int width, int height, const std::vector<std::string>& layers, const 
       illumination_ = add_layer(layer, {"R", "G", "B"});
     else if (layer == "variance")
       variance_ = add_layer(layer, {"R", "G", "B"});
+    else if (layer == "samples")
+      samples_layer_ = add_layer(layer, {"Y"});
     else if (layer == "lights") {
       std::set<std::string> taken{"emission"};
       for (std::size_t i = 0; i < lights.size(); ++i) {
         lights_.push_back(add_layer(light_layer_name(lights[i], i, taken), {"R", "G", "B"}));
       }
       lights_.push_back(add_layer("light.emission", {"R", "G", "B"}));
+    } else if (layer == "cryptomatte") {
+      mattes_wanted_ = true;
+      for (int k = 0; k < 2; ++k) {
+        matte_layers_[k] = int(names_.size());
+        for (std::string& name : matte_channels(kMatteLayers[k])) names_.push_back(std::move(name));
+      }
     } else {
       throw Error(
           {"", "layers", fmt::format("no layer \"{}\"", layer), fmt::format("{}", fmt::join(frame_layers(), ", "))});
     }
   }
   stride_ = names_.size();
-  sums_.assign(std::size_t(width) * height * stride_, 0);
-  squares_.assign(std::size_t(width) * height * 3, 0);
+  const std::size_t pixels = std::size_t(width) * height;
+  layers_.assign(pixels * 2 * stride_, 0);
+  batches_.assign(pixels * kBatches * 3, 0);
+  for (auto& mattes : mattes_) mattes.resize(mattes_wanted_ ? pixels : 0);
+  tile_columns_ = (width + kTileSide - 1) / kTileSide;
+  for (int y = 0; y < height; y += kTileSide) {
+    for (int x = 0; x < width; x += kTileSide) {
+      tiles_.push_back({x, y, std::min(x + kTileSide, width), std::min(y + kTileSide, height)});
+    }
+  }
+  asked_.assign(tiles_.size(), {0, 0});
+  dropped_.assign(tiles_.size(), 0);
 }
 
-void Film::add(int x, int y, const PixelSample& s) {
-  const std::size_t pixel = std::size_t(y) * width_ + x;
-  double* sums = &sums_[pixel * stride_];
+TileSums Film::make_sums(std::size_t tile) const {
+  const std::size_t pixels = std::size_t(tiles_[tile].pixels());
+  TileSums sums;
+  sums.layers.assign(pixels * 2 * stride_, 0);
+  sums.batches.assign(pixels * kBatches * 3, 0);
+  for (auto& mattes : sums.mattes) mattes.resize(mattes_wanted_ ? pixels : 0);
+  return sums;
+}
+
+void Film::add(TileSums& tile, int pixel, int batch, const PixelSample& s) const {
+  const int half = batch & 1;
+  double* sums = &tile.layers[(2 * std::size_t(pixel) + std::size_t(half)) * stride_];
+  add3(&tile.batches[3 * (std::size_t(pixel) * kBatches + std::size_t(batch))], s.beauty);
   add3(sums, s.beauty);
   sums[3] += s.hit ? 1 : 0;
-  add3(&squares_[3 * pixel], s.beauty * s.beauty);
   if (albedo_ >= 0) add3(sums + albedo_, s.albedo);
   if (normal_ >= 0) add3(sums + normal_, s.normal);
   if (position_ >= 0) add3(sums + position_, s.position);
@@ -86,29 +118,138 @@ void Film::add(int x, int y, const PixelSample& s) {
   if (indirect_ >= 0) add3(sums + indirect_, s.light.indirect);
   if (illumination_ >= 0) add3(sums + illumination_, s.illumination);
   for (std::size_t i = 0; i < lights_.size(); ++i) add3(sums + lights_[i], s.light.per_light[i]);
+  if (!mattes_wanted_ || !s.hit) return;
+  add_matte(tile.mattes[0][std::size_t(pixel)], s.object, half, 1);
+  add_matte(tile.mattes[1][std::size_t(pixel)], s.material, half, 1);
 }
 
-Image Film::finish(int samples, double& relative_standard_error) const {
-  Image image = make_image(width_, height_, names_);
-  double error = 0, value = 0;
-  for (std::size_t pixel = 0; pixel < std::size_t(width_) * height_; ++pixel) {
-    const double* sums = &sums_[pixel * stride_];
-    float* out = &image.pixels[pixel * stride_];
-    for (std::size_t c = 0; c < stride_; ++c) out[c] = float(sums[c] / samples);
-    const double hits = sums[3];
-    for (const int first : {normal_, position_}) {
-      for (int c = 0; first >= 0 && c < 3; ++c) out[first + c] = hits > 0 ? float(sums[first + c] / hits) : 0.0F;
-    }
-    if (depth_ >= 0) out[depth_] = hits > 0 ? float(sums[depth_] / hits) : kInfinity;
-    for (int c = 0; c < 3; ++c) {
-      const double mean = sums[c] / samples;
-      const double variance = std::max(0.0, squares_[3 * pixel + c] / samples - mean * mean) / std::max(1, samples - 1);
-      if (variance_ >= 0) out[variance_ + c] = float(variance);
-      error += variance;
-      value += mean * mean;
+std::size_t Film::index(std::size_t tile, int pixel) const {
+  const FilmTile& t = tiles_[tile];
+  return std::size_t(t.y0 + pixel / t.width()) * width_ + t.x0 + pixel % t.width();
+}
+
+void Film::merge(std::size_t tile, const TileSums& sums, std::array<int, 2> batch_samples) {
+  const auto add_all = [](float* to, const double* from, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) to[i] += float(from[i]);
+  };
+  for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
+    const std::size_t at = index(tile, pixel), p = std::size_t(pixel);
+    add_all(&layers_[at * 2 * stride_], &sums.layers[p * 2 * stride_], 2 * stride_);
+    add_all(&batches_[at * kBatches * 3], &sums.batches[p * kBatches * 3], kBatches * 3);
+    for (std::size_t k = 0; k < 2 && mattes_wanted_; ++k) {
+      for (const MatteCount& count : sums.mattes[k][p]) {
+        for (int half = 0; half < 2; ++half) add_matte(mattes_[k][at], count.id, half, count.samples[half]);
+      }
     }
   }
-  relative_standard_error = value > 0 ? std::sqrt(error / value) : 0;
+  asked_[tile] = batch_samples;
+  dropped_[tile] += sums.dropped;
+}
+
+std::uint64_t Film::dropped() const { return std::accumulate(dropped_.begin(), dropped_.end(), std::uint64_t{0}); }
+
+int Film::batch_samples(int batch, int asked) const {
+  return std::min(asked, samples_ / kBatches + (batch < samples_ % kBatches ? 1 : 0));
+}
+
+int Film::half_samples(std::size_t tile, int half) const {
+  return batch_samples(half, asked_[tile][half]) + batch_samples(half + 2, asked_[tile][half]);
+}
+
+int Film::tile_samples(std::size_t tile) const { return half_samples(tile, 0) + half_samples(tile, 1); }
+
+// Halves count the same even where one has more samples: their means are without bias, a mean weighted by numbers of
+// samples that the samples themselves have decided is not.
+std::array<double, 2> Film::half_weights(std::size_t tile) const {
+  const int a = half_samples(tile, 0), b = half_samples(tile, 1);
+  if (b == 0) return {a > 0 ? 1.0 / a : 0.0, 0};
+  return {0.5 / a, 0.5 / b};
+}
+
+HalfStatistics Film::statistics(std::size_t tile, int half) const {
+  const int n0 = batch_samples(half, asked_[tile][half]), n1 = batch_samples(half + 2, asked_[tile][half]);
+  HalfStatistics s;
+  if (n0 == 0 || n1 == 0) return s;
+  for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
+    const float* sums = &batches_[index(tile, pixel) * kBatches * 3];
+    const Vec3f a = mean_of(sums + 3 * half, n0), b = mean_of(sums + 3 * (half + 2), n1);
+    s.value += double(dot(float(n0) * a + float(n1) * b, {1, 1, 1})) / (3 * (n0 + n1));
+    s.variance += double(length_squared(a - b)) / 3 * n0 * n1 / (n0 + n1);
+  }
+  s.value /= tiles_[tile].pixels();
+  s.variance /= tiles_[tile].pixels();
+  return s;
+}
+
+// The batches' means m_b of n_b samples are taken to vary as σ²/n_b: σ² = Σ n_b (m_b − m)² / (batches − 1).
+Film::PixelEstimate Film::estimate(std::size_t tile, int pixel) const {
+  const float* sums = &batches_[index(tile, pixel) * kBatches * 3];
+  const std::array<double, 2> weights = half_weights(tile);
+  std::array<int, kBatches> n{};
+  int all = 0, batches = 0;
+  Vec3f total;
+  for (int b = 0; b < kBatches; ++b) {
+    n[b] = batch_samples(b, asked_[tile][b & 1]);
+    if (n[b] == 0) continue;
+    ++batches;
+    all += n[b];
+    total += Vec3f{sums[3 * b], sums[3 * b + 1], sums[3 * b + 2]};
+  }
+  PixelEstimate e;
+  for (int half = 0; half < 2; ++half) {
+    for (int c = 0; c < 3; ++c)
+      e.value[c] += float(weights[half] * double(sums[3 * half + c] + sums[3 * half + 6 + c]));
+  }
+  if (batches < 2) return e;
+  Vec3f spread;
+  const Vec3f mean = total / float(all);
+  for (int b = 0; b < kBatches; ++b) {
+    if (n[b] == 0) continue;
+    const Vec3f d = mean_of(sums + 3 * b, n[b]) - mean;
+    spread += float(n[b]) * d * d;
+  }
+  double share = 0;  // Σ (weight of a sample)², of the two halves
+  for (int half = 0; half < 2; ++half) share += weights[half] * weights[half] * half_samples(tile, half);
+  e.variance = (float(share) / float(batches - 1)) * spread;
+  return e;
+}
+
+double Film::relative_standard_error() const {
+  double error = 0, value = 0;
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+    for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
+      const PixelEstimate e = estimate(tile, pixel);
+      error += double(dot(e.variance, {1, 1, 1}));
+      value += double(length_squared(e.value));
+    }
+  }
+  return value > 0 ? std::sqrt(error / value) : 0;
+}
+
+void Film::finish_pixel(std::size_t tile, int pixel, float* out) const {
+  const std::size_t at = index(tile, pixel);
+  const std::array<double, 2> weights = half_weights(tile);
+  const float *a = &layers_[at * 2 * stride_], *b = a + stride_;
+  for (std::size_t c = 0; c < stride_; ++c) out[c] = float(weights[0] * double(a[c]) + weights[1] * double(b[c]));
+  const float hits = out[3];
+  for (const int first : {normal_, position_}) {
+    for (int c = 0; first >= 0 && c < 3; ++c) out[first + c] = hits > 0 ? out[first + c] / hits : 0.0F;
+  }
+  if (depth_ >= 0) out[depth_] = hits > 0 ? out[depth_] / hits : kInfinity;
+  if (samples_layer_ >= 0) out[samples_layer_] = float(tile_samples(tile));
+  for (std::size_t k = 0; k < 2 && mattes_wanted_; ++k) write_mattes(mattes_[k][at], weights, out + matte_layers_[k]);
+  if (variance_ < 0) return;
+  const Vec3f variance = estimate(tile, pixel).variance;
+  for (int c = 0; c < 3; ++c) out[variance_ + c] = variance[c];
+}
+
+Image Film::finish() const {
+  Image image = make_image(width_, height_, names_);
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+    for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
+      finish_pixel(tile, pixel, &image.pixels[index(tile, pixel) * stride_]);
+    }
+  }
   return image;
 }
 

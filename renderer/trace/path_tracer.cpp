@@ -20,6 +20,13 @@ float balance_heuristic(float pdf, float other) {
   return weight >= 0 ? weight : 0;
 }
 
+// By how much the cone grows that a scattered ray stands for when textures are looked up: by the width of the
+// directions that share its density, as if some hundred rays shared them.
+float scattered_cone(float pdf) {
+  constexpr float kScattered = 0.0625F;
+  return pdf > 0 ? kScattered / std::sqrt(pdf) : 0;
+}
+
 // Emission from no triangle at all, where the scene's own is not wanted.
 const Scene& scene_without_emission() {
   static const Scene empty;
@@ -37,6 +44,14 @@ struct PathTracer::Vertex {
   const Bsdf* bsdf;  // nullptr: a receiver, whose response to irradiance is 1/π
   int index;
   float area_pdf = 0;  // with which scattering at the vertex before found this one, per m²
+
+  // As SurfacePoint's; no lift: rays start at the position whatever their direction.
+  Vec3f lift{}, triangle_normal{};
+
+  // Light from below the triangle's horizon that the smooth surface sees: shadow rays start up there.
+  bool sees_past_triangle(Vec3f to_light) const {
+    return max_component(abs(lift)) > 0 && dot(triangle_normal, to_light) <= 0;
+  }
 
   Vec3f eval(Vec3f to_light) const {
     if (bsdf != nullptr) return bsdf->eval(to_viewer, to_light);
@@ -62,18 +77,24 @@ PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounce
       emitters_(scene_emission ? tracer.scene() : scene_without_emission()),
       bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces) {}
 
-float PathTracer::visibility(Vec3f origin, Vec3f to_light, float distance, Sampler& sampler) const {
+float PathTracer::visibility(const Vertex& v, Vec3f to_light, float distance, Sampler& sampler) const {
   // A little short of the light, so that an emissive triangle does not hide itself.
-  const float far = distance == kInfinity ? kInfinity : distance * (1 - 1e-4F);
-  return tracer_.occluded({origin, to_light, 0, far, sampler.next_bits()}) ? 0.0F : 1.0F;
+  constexpr float kShort = 1e-4F;
+  const float far = distance == kInfinity ? kInfinity : distance * (1 - kShort);
+  const std::uint32_t alpha_seed = sampler.next_bits();
+  const Vec3f origin = v.ray_origin();
+  if (!v.sees_past_triangle(to_light)) return tracer_.occluded({origin, to_light, 0, far, alpha_seed}) ? 0.0F : 1.0F;
+  const Vec3f lifted = offset_point(v.position + v.lift, v.normal, v.rounding);
+  if (tracer_.occluded({origin, lifted - origin, 0, 1, alpha_seed})) return 0;
+  const Vec3f along = far == kInfinity ? to_light : v.position + distance * to_light - lifted;
+  return tracer_.occluded({lifted, along, 0, far == kInfinity ? kInfinity : 1 - kShort, alpha_seed}) ? 0.0F : 1.0F;
 }
 
 void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const Vec3f origin = v.ray_origin();
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const PunctualSample s = sample_punctual(lights_[i], v.position);
     const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance;
-    if (max_component(value) > 0) light.add(v.index, i, visibility(origin, s.to_light, s.distance, sampler) * value);
+    if (max_component(value) > 0) light.add(v.index, i, visibility(v, s.to_light, s.distance, sampler) * value);
   }
 }
 
@@ -120,12 +141,12 @@ void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sa
   const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance / probability;
   if (!is_finite(value)) return;  // closer to the light than floats can tell
   float weight = 1;
-  if (s.distance <= subpath_reach_) {
-    const float cosine = std::abs(dot(v.normal, s.to_light));
+  const float cosine = dot(v.normal, s.to_light);
+  if (s.distance <= subpath_reach_ && cosine > 0) {
     const float subpath_pdf = emission_.pdf(i, -s.to_light) * cosine / (s.distance * s.distance);
     weight = balance_heuristic(v.area_pdf * probability, subpath_pdf);
   }
-  light.add(v.index, i, (weight * visibility(v.ray_origin(), s.to_light, s.distance, sampler)) * value);
+  light.add(v.index, i, (weight * visibility(v, s.to_light, s.distance, sampler)) * value);
 }
 
 // A ray from a light ends at y, and y is connected with the vertex.
@@ -146,7 +167,8 @@ void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& s
   const SurfacePoint point = make_surface_point(tracer_.scene(), connection, *hit);
   const Bsdf bsdf(point);
   const Vertex y{point.position, point.geometric_normal, point.rounding, -to_end, &bsdf, v.index + 1};
-  const float cosine_light = std::abs(dot(y.normal, from.direction)), cosine_vertex = dot(y.normal, -to_end);
+  // A ray from behind the triangle does not arrive, whatever the smooth surface sees.
+  const float cosine_light = -dot(y.normal, from.direction), cosine_vertex = dot(y.normal, -to_end);
   const Vec3f reflected = y.eval(-from.direction) * from.intensity;
   if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
 
@@ -168,7 +190,7 @@ void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sample
   const Vec3f value = throughput * v.eval(s.to_light) * s.radiance / s.pdf;
   if (!(max_component(value) > 0)) return;
   const float weight = balance_heuristic(s.pdf, v.pdf(s.to_light));
-  light.add(v.index, emission_source(), (weight * visibility(v.ray_origin(), s.to_light, s.distance, sampler)) * value);
+  light.add(v.index, emission_source(), (weight * visibility(v, s.to_light, s.distance, sampler)) * value);
 }
 
 // The light of one vertex, but for what scattered rays bring.
@@ -191,7 +213,7 @@ void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Sampler
 void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
                        PathLight& light) const {
   for (;; ++index) {
-    const Ray ray{origin, direction, 0, kInfinity, sampler.next_bits()};
+    const Ray ray{origin, direction, 0, kInfinity, sampler.next_bits(), 0, scattered_cone(pdf)};
     const auto hit = tracer_.intersect(ray);
     if (!hit) return;
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
@@ -203,7 +225,8 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
     const Bsdf bsdf(point);
     const float cosine = dot(point.geometric_normal, -direction);
     const float area_pdf = pdf * cosine / (hit->distance * hit->distance);
-    const Vertex vertex{point.position, point.geometric_normal, point.rounding, -direction, &bsdf, index, area_pdf};
+    const Vertex vertex{point.position, point.geometric_normal, point.rounding, -direction, &bsdf, index, area_pdf,
+                        point.lift,     point.geometric_normal};
     add_lights(vertex, throughput, sampler, light);
     if (index == bounces_ && emitters_.empty()) return;
     const Vec2f u = sampler.next_2d();
@@ -224,7 +247,8 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
 void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int index, Vec3f throughput,
                                Sampler& sampler, PathLight& light) const {
   const Bsdf bsdf(point);
-  const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index};
+  const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, 0,
+                      point.lift,     point.geometric_normal};
   add_lights(vertex, throughput, sampler, light);
   if (index == bounces_ && emitters_.empty()) return;
   const Vec2f u = sampler.next_2d();
@@ -248,7 +272,7 @@ void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, P
   constexpr float kLeastCosine = 0.1F;
   const Vec3f normal = point.shading_normal;
   const float rounding = point.rounding / std::max(kLeastCosine, dot(normal, point.geometric_normal));
-  const Vertex vertex{point.position, normal, rounding, normal, nullptr, 0};
+  const Vertex vertex{point.position, normal, rounding, normal, nullptr, 0, 0, point.lift, point.geometric_normal};
   add_all_punctual(vertex, {1, 1, 1}, sampler, light);
   add_indirect_illumination(vertex, sampler, light);
 }

@@ -22,8 +22,12 @@ struct PathLight {
   Vec3f indirect;  // through one further surface or more
   // Per punctual light, and the emissive surfaces last; empty: not asked for. direct + indirect = their sum.
   std::vector<Vec3f> per_light;
+  // Brighter contributions are scaled down until their largest channel is this, cd/m².
+  float clamp_direct = kInfinity, clamp_indirect = kInfinity;
 
   void add(int vertex, std::size_t source, Vec3f value) {
+    const float most = vertex == 0 ? clamp_direct : clamp_indirect, brightest = max_component(value);
+    if (brightest > most) value *= most / brightest;
     (vertex == 0 ? direct : indirect) += value;
     if (!per_light.empty()) per_light[source] += value;
   }
@@ -64,7 +68,7 @@ class PathTracer {
   float pick_weight(const Vertex& vertex, std::size_t light) const;
   float pick_probability(const Vertex& vertex, std::size_t light) const;
   void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  float visibility(Vec3f origin, Vec3f to_light, float distance, Sampler& sampler) const;
+  float visibility(const Vertex& vertex, Vec3f to_light, float distance, Sampler& sampler) const;
 
   const RayTracer& tracer_;
   const Lights& lights_;

@@ -5,29 +5,42 @@
 #include <vector>
 
 #include "renderer/image/image.h"
+#include "renderer/trace/camera_rays.h"
+#include "renderer/trace/cryptomatte.h"
 #include "renderer/trace/trace_illumination.h"
 
 namespace chiaro::renderer {
 
 struct RenderOptions {
   int width = 960, height = 540;
-  TraceOptions trace{.samples = 64};
-  double time_limit = 0;            // seconds; 0: none. Passes go on until it is spent, `samples` is then the most
-  bool box_filter = false;          // 1-pixel box instead of Blackman–Harris, 1.5 pixels radius
-  std::vector<std::string> layers;  // of kFrameLayers
+  TraceOptions trace{.samples = 64};  // samples: the most of a pixel
+  double time_limit = 0;              // seconds; 0: none. Passes go on until it is spent
+  double noise_threshold = 0;         // error at which a tile needs no more samples, see adaptive_sampling.h; 0: none
+  // Most of a sample's contribution by one light on one surface, cd/m². Bias for less noise: off unless asked for.
+  float clamp_direct = kInfinity, clamp_indirect = kInfinity;
+  bool box_filter = false;  // 1-pixel box instead of Blackman–Harris, 1.5 pixels radius
+  Lens lens;
+  std::vector<std::string> layers;  // of frame_layers()
 };
 
-// albedo, normal, position, depth, direct, indirect, illumination, variance, lights (one `light.NAME` layer per light).
+// albedo, normal, position, depth, direct, indirect, illumination, variance (of the pixel's mean), samples (of the
+// pixel), lights (one `light.NAME` layer per light), cryptomatte (of objects and materials).
 const std::vector<std::string>& frame_layers();
 
 struct Frame {
-  Image image;      // R, G, B in cd/m², A, then the layers as LAYER.R …
-  int samples = 0;  // per pixel, taken
+  Image image;              // R, G, B in cd/m², A, then the layers as LAYER.R …
+  int samples = 0;          // of the pixel that has the most
+  double mean_samples = 0;  // per pixel
   double seconds = 0;
   double relative_standard_error = 0;  // of the mean of the frame's pixels, sqrt(Σ se² / Σ value²)
+  std::uint64_t dropped_samples = 0;   // that were not finite, and were left black
+  bool interrupted = false;            // asked to stop before it was done; every pixel has samples all the same
+  Lens lens;                           // as rendered with
+  std::vector<Matte> mattes;           // of the cryptomatte layer
 };
 
-// The frame that `camera` sees under `lights` and the scene's emissive surfaces.
+// The frame that `camera` sees under `lights` and the scene's emissive surfaces. Asked to stop, it gives what it has;
+// Interruption where some pixel has no sample yet.
 Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights, const RenderOptions& options,
              const Control& control = {});
 

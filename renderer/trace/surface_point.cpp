@@ -16,15 +16,25 @@ struct Locus {
   const Mesh& mesh;
   const Triangle& triangle;
   float u, v;
+  float footprint = 0;  // area of the ray's cone here, in areas of the triangle; 0: textures in full
 
   std::optional<Vec4f> sample(const TextureUse& use, bool srgb) const {
     if (use.texture < 0 || mesh.uv[use.uv_set].empty()) return std::nullopt;
-    return look_up(scene.textures[use.texture], interpolate(mesh.uv[use.uv_set], triangle, u, v), srgb);
+    const Texture& texture = scene.textures[use.texture];
+    return look_up(texture, interpolate(mesh.uv[use.uv_set], triangle, u, v), srgb, mip_level_for(use, texture));
+  }
+
+  int mip_level_for(const TextureUse& use, const Texture& texture) const {
+    if (!(footprint > 0) || texture.mips.empty()) return 0;
+    const auto& uv = mesh.uv[use.uv_set];
+    const Vec2f a = uv[triangle[0]], b = uv[triangle[1]], c = uv[triangle[2]];
+    const float area = 0.5F * std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+    return mip_level_of(footprint * area * float(texture.width) * float(texture.height));
   }
 };
 
 Locus locus_at(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
-  return {scene, mesh, mesh.triangles[triangle], u, v};
+  return {scene, mesh, mesh.triangles[triangle], u, v, 0};
 }
 
 Vec3f base_color(const Locus& at, const Material& material) {
@@ -145,13 +155,44 @@ float circle_radius(const Corners& corners) {
   return radius < most ? radius : most;
 }
 
+float triangle_area(const Corners& corners) {
+  return 0.5F * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+
+// Of a ray's cone, in areas of the triangle that it meets there. It is not stretched by the angle of incidence.
+float cone_footprint(const Ray& ray, float distance, const Corners& corners) {
+  const float width = ray.cone_width + ray.cone_spread * distance;
+  return width > 0 ? width * width / triangle_area(corners) : 0;
+}
+
+// Cosine between vertex normals and triangles from which on they are the same.
+constexpr float kFlat = 0.999999F;
+
+// From a triangle's point to the surface that its vertex normals stand for: the mean of its projections to the tangent
+// planes of the corners, of those that it lies below.
+// Source: Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, 2021.
+Vec3f lift_to_smooth(const Locus& at, float side) {
+  const float weights[3] = {1 - at.u - at.v, at.u, at.v};
+  const Vec3f p = interpolate(at.mesh.positions, at.triangle, at.u, at.v);
+  Vec3f lift;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f n = at.mesh.normals[at.triangle[k]];
+    const float below = side * dot(p - at.mesh.positions[at.triangle[k]], n);
+    if (below < 0) lift += (-weights[k] * below * side / length_squared(n)) * n;
+  }
+  return lift;
+}
+
 }  // namespace
 
 float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
   const Locus at = locus_at(scene, mesh, triangle, u, v);
   const Material& material = scene.materials[mesh.material];
   float alpha = material.alpha;
-  if (const auto texel = at.sample(material.base_color_texture, true)) alpha *= texel->w;
+  const TextureUse& use = material.base_color_texture;
+  if (use.texture >= 0 && !mesh.uv[use.uv_set].empty()) {
+    alpha *= look_up_alpha(scene.textures[use.texture], interpolate(mesh.uv[use.uv_set], at.triangle, u, v));
+  }
   if (!mesh.colors.empty()) alpha *= interpolate(mesh.colors, at.triangle, u, v).w;
   return alpha;
 }
@@ -164,9 +205,10 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const Instance& instance = scene.instances[hit.instance];
   const Mesh& mesh = scene.meshes[instance.mesh];
   const Material& material = scene.materials[mesh.material];
-  const Locus at = locus_at(scene, mesh, hit.triangle, hit.u, hit.v);
+  Locus at = locus_at(scene, mesh, hit.triangle, hit.u, hit.v);
   SurfacePoint point;
   const Corners corners = world_corners(at, instance.world_from_object);
+  at.footprint = cone_footprint(ray, hit.distance, corners);
   point.position = corners[0] + hit.u * (corners[1] - corners[0]) + hit.v * (corners[2] - corners[0]);
   point.rounding =
       surface_rounding(hit.instanced ? largest_term(at, instance.world_from_object) : largest_coordinate(corners),
@@ -179,6 +221,10 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const auto on_side = [&](Vec3f n) { return dot(n, point.geometric_normal) < 0 ? -n : n; };
   point.smooth_normal = on_side(normals.smooth);
   point.shading_normal = bend_for_reflection(on_side(normals.mapped), to_viewer, point.geometric_normal);
+  if (dot(point.smooth_normal, point.geometric_normal) < kFlat) {
+    const float smooth_side = dot(normals.smooth, point.geometric_normal) < 0 ? -1.0F : 1.0F;
+    point.lift = transform_direction(instance.world_from_object, lift_to_smooth(at, smooth_side));
+  }
   point.base_color = base_color(at, material);
   point.lambert = material.lambert;
   point.metallic = material.metallic;

@@ -11,7 +11,10 @@ struct SurfacePoint {
   Vec3f geometric_normal;  // unit, on the side that the ray came from
   Vec3f smooth_normal;     // unit, the vertices' interpolated, on that side
   Vec3f shading_normal;    // unit, with the normal map, bent where it would reflect the ray into the surface
-  Vec3f base_color;        // linear
+  // Metres to the surface that the vertices' normals stand for, where it is rounder than its triangles: for light from
+  // below the triangle's horizon and above the surface's own.
+  Vec3f lift;
+  Vec3f base_color;  // linear
   float metallic = 0, roughness = 1;
   Vec3f emission;  // cd/m², from both sides
   bool lambert = false;

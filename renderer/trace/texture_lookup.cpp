@@ -1,66 +1,85 @@
 #include "renderer/trace/texture_lookup.h"
 
-#include <array>
+#include <bit>
+
+#include "renderer/image/texel_encoding.h"
 
 namespace chiaro::renderer {
 namespace {
 
-using DecodeTable = std::array<float, 256>;
+const DecodeTable kSrgb = decode_table(true), kLinear = decode_table(false);
 
-// IEC 61966-2-1.
-DecodeTable make_srgb_table() {
-  DecodeTable table;
-  for (int i = 0; i < 256; ++i) {
-    const double v = i / 255.0;
-    table[i] = float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-  }
-  return table;
+// Two neighbouring texels of a row or column, and the share of the second.
+struct Neighbours {
+  int first = 0, second = 0;
+  float t = 0;
+};
+
+// uv to 0 … 1, where 0 and 1 are the texture's sides.
+float wrapped(float uv, Wrap mode) {
+  if (mode == Wrap::kClampToEdge) return std::clamp(uv, 0.0F, 1.0F);
+  if (mode == Wrap::kRepeat) return uv - std::floor(uv);
+  const float twice = uv - 2 * std::floor(0.5F * uv);
+  return twice > 1 ? 2 - twice : twice;
 }
 
-DecodeTable make_linear_table() {
-  DecodeTable table;
-  for (int i = 0; i < 256; ++i) table[i] = float(i) / 255.0F;
-  return table;
+int nearest(float uv, int size, Wrap mode) { return std::min(int(wrapped(uv, mode) * float(size)), size - 1); }
+
+Neighbours neighbours(float uv, int size, Wrap mode) {
+  const float x = wrapped(uv, mode) * float(size) - 0.5F, floor = std::floor(x);
+  Neighbours n{int(floor), int(floor) + 1, x - floor};
+  const bool repeats = mode == Wrap::kRepeat;
+  if (n.first < 0) n.first = repeats ? size - 1 : 0;
+  if (n.second >= size) n.second = repeats ? 0 : size - 1;
+  return n;
 }
 
-const DecodeTable kSrgb = make_srgb_table();
-const DecodeTable kLinear = make_linear_table();
-
-int wrap(int i, int size, Wrap mode) {
-  if (mode == Wrap::kClampToEdge) return std::clamp(i, 0, size - 1);
-  const int period = mode == Wrap::kRepeat ? size : 2 * size;
-  i %= period;
-  if (i < 0) i += period;
-  return i < size ? i : period - 1 - i;
-}
-
-Vec4f texel(const Texture& texture, int x, int y, const DecodeTable& table) {
-  const std::uint8_t* p = &texture.rgba[4 * (std::size_t(y) * texture.width + x)];
-  return {table[p[0]], table[p[1]], table[p[2]], kLinear[p[3]]};
-}
+bool is_finite(Vec2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }
 
 }  // namespace
 
-Vec4f look_up(const Texture& texture, Vec2f uv, bool srgb) {
-  const DecodeTable& table = srgb ? kSrgb : kLinear;
-  // Whole turns are taken off first, so that large coordinates keep their fraction and never overflow an int.
-  const float u = (uv.x - 2 * std::floor(0.5F * uv.x)) * float(texture.width);
-  const float v = (uv.y - 2 * std::floor(0.5F * uv.y)) * float(texture.height);
-  const bool clamped_u = texture.wrap_u == Wrap::kClampToEdge, clamped_v = texture.wrap_v == Wrap::kClampToEdge;
-  const float x = clamped_u ? std::clamp(uv.x, -1.0F, 2.0F) * float(texture.width) : u;
-  const float y = clamped_v ? std::clamp(uv.y, -1.0F, 2.0F) * float(texture.height) : v;
-  if (!std::isfinite(x) || !std::isfinite(y)) return texel(texture, 0, 0, table);
+Vec4f look_up(const Texture& texture, Vec2f uv, bool srgb, int level) {
+  if (!is_finite(uv)) uv = {};
+  const DecodeTable &color = srgb ? kSrgb : kLinear, &alpha = kLinear;
+  const MipLevel mip = mip_level(texture, texture.nearest ? 0 : level);
+  const auto at = [&](int x, int y) {
+    return mip.texels + 4 * (std::size_t(y) * std::size_t(mip.width) + std::size_t(x));
+  };
   if (texture.nearest) {
-    return texel(texture, wrap(int(std::floor(x)), texture.width, texture.wrap_u),
-                 wrap(int(std::floor(y)), texture.height, texture.wrap_v), table);
+    const auto* p = at(nearest(uv.x, mip.width, texture.wrap_u), nearest(uv.y, mip.height, texture.wrap_v));
+    return {color[p[0]], color[p[1]], color[p[2]], alpha[p[3]]};
   }
-  const float fx = std::floor(x - 0.5F), fy = std::floor(y - 0.5F);
-  const float tx = x - 0.5F - fx, ty = y - 0.5F - fy;
-  const int x0 = wrap(int(fx), texture.width, texture.wrap_u), x1 = wrap(int(fx) + 1, texture.width, texture.wrap_u);
-  const int y0 = wrap(int(fy), texture.height, texture.wrap_v), y1 = wrap(int(fy) + 1, texture.height, texture.wrap_v);
-  const Vec4f top = (1 - tx) * texel(texture, x0, y0, table) + tx * texel(texture, x1, y0, table);
-  const Vec4f bottom = (1 - tx) * texel(texture, x0, y1, table) + tx * texel(texture, x1, y1, table);
-  return (1 - ty) * top + ty * bottom;
+  const Neighbours x = neighbours(uv.x, mip.width, texture.wrap_u), y = neighbours(uv.y, mip.height, texture.wrap_v);
+  const std::uint8_t *a = at(x.first, y.first), *b = at(x.second, y.first), *c = at(x.first, y.second),
+                     *d = at(x.second, y.second);
+  const float wd = x.t * y.t, wb = x.t - wd, wc = y.t - wd, wa = 1 - x.t - wc;
+  const auto channel = [&](int k, const DecodeTable& table) {
+    return wa * table[a[k]] + wb * table[b[k]] + wc * table[c[k]] + wd * table[d[k]];
+  };
+  return {channel(0, color), channel(1, color), channel(2, color), channel(3, alpha)};
+}
+
+float look_up_alpha(const Texture& texture, Vec2f uv) {
+  if (!is_finite(uv)) uv = {};
+  const auto at = [&](int x, int y) {
+    return float(texture.rgba[4 * (std::size_t(y) * std::size_t(texture.width) + std::size_t(x)) + 3]) / 255.0F;
+  };
+  if (texture.nearest) {
+    return at(nearest(uv.x, texture.width, texture.wrap_u), nearest(uv.y, texture.height, texture.wrap_v));
+  }
+  const Neighbours x = neighbours(uv.x, texture.width, texture.wrap_u);
+  const Neighbours y = neighbours(uv.y, texture.height, texture.wrap_v);
+  const float top = (1 - x.t) * at(x.first, y.first) + x.t * at(x.second, y.first);
+  const float low = (1 - x.t) * at(x.first, y.second) + x.t * at(x.second, y.second);
+  return (1 - y.t) * top + y.t * low;
+}
+
+int mip_level_of(float footprint_texels) {
+  constexpr float kTexelsAcross = 4;
+  const float texels = footprint_texels / (kTexelsAcross * kTexelsAcross);
+  if (!(texels >= 4)) return 0;
+  // floor(log2 √texels), by the float's own exponent.
+  return (int(std::bit_cast<std::uint32_t>(texels) >> 23) - 127) / 2;
 }
 
 }  // namespace chiaro::renderer

@@ -1,10 +1,12 @@
 // What commands print, and under which names.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/image/image_file.h"
+#include "renderer/trace/cryptomatte.h"
 #include "tests/cli/run_with.h"
 #include "tests/inverse/target/foreign_mesh.h"
 #include "tests/support/temporary_folder.h"
@@ -48,6 +50,43 @@ TEST(CliRender, NamesThePreviewAmongWhatItWrote) {
   const json summary = json::parse(render_preview(folder, {"--json"}).standard_output);
   EXPECT_EQ(summary["written"], json::array({frame, preview}));
   for (const std::string file : summary["written"]) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+}
+
+const std::string* text_of(const renderer::Attributes& attributes, const std::string& name) {
+  for (const auto& [key, value] : attributes) {
+    if (key == name) return std::get_if<std::string>(&value);
+  }
+  return nullptr;
+}
+
+TEST(CliRender, MattesHaveTheirManifest) {
+  const TemporaryFolder folder;
+  const Outcome outcome = render_preview(folder, {"--layers", "cryptomatte"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+  const renderer::Attributes attributes = renderer::load_image_header(folder / "frame.exr").attributes;
+  for (const std::string layer : {"CryptoObject", "CryptoMaterial"}) {
+    const std::string prefix =
+        "cryptomatte/" + fmt::format("{:08x}", renderer::murmur_hash_3_32(layer)).substr(0, 7) + "/";
+    ASSERT_NE(text_of(attributes, prefix + "name"), nullptr);
+    EXPECT_EQ(*text_of(attributes, prefix + "name"), layer);
+    EXPECT_EQ(*text_of(attributes, prefix + "hash"), "MurmurHash3_32");
+    EXPECT_EQ(*text_of(attributes, prefix + "conversion"), "uint32_to_float32");
+    const json manifest = json::parse(*text_of(attributes, prefix + "manifest"));
+    EXPECT_GT(manifest.size(), 2U);
+    for (const auto& [name, id] : manifest.items()) EXPECT_EQ(id, fmt::format("{:08x}", renderer::matte_id(name)));
+  }
+}
+
+TEST(CliRender, LensesAreWrittenIntoTheHeaderAndNeedAnFNumber) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(render_preview(folder, {"--f-number", "2", "--focus-distance", "3.5"}).exit_code, kDone);
+  const renderer::Attributes attributes = renderer::load_image_header(folder / "frame.exr").attributes;
+  for (const auto& [name, expected] : {std::pair{"aperture", 2.0F}, {"focus", 3.5F}}) {
+    bool found = false;
+    for (const auto& [key, value] : attributes) found = found || (key == name && std::get<float>(value) == expected);
+    EXPECT_TRUE(found) << name;
+  }
+  EXPECT_EQ(render_preview(folder, {"--focus-distance", "3.5"}).exit_code, kWrongUsage);
 }
 
 std::string grey_frame(const TemporaryFolder& folder, const std::string& name, float grey) {

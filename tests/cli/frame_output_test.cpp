@@ -83,7 +83,7 @@ TEST(CliFrameMetadata, OrthographicWidthFollowsTheFrame) {
 }
 
 TEST(CliFrameMetadata, SameFrameHasTheSameAttributes) {
-  const FrameOrigin origin{.scene = "a.glb", .materials = "gltf", .seed = 7, .samples = 4, .bounces = 2};
+  const FrameOrigin origin{.scene = "a.glb", .materials = "gltf", .seed = 7, .bounces = 2};
   EXPECT_EQ(frame_attributes(camera_looking_along_x(), 2, origin),
             frame_attributes(camera_looking_along_x(), 2, origin));
 }

@@ -1,6 +1,7 @@
 #include "renderer/image/image_file.h"
 
 #include <gtest/gtest.h>
+#include <bit>
 
 #include <cmath>
 
@@ -95,6 +96,20 @@ TEST(ExrFile, HalvesRoundAndDoNotOverflow) {
   image.pixels[0] = 65504;
   image.pixels[1] = -65504;
   EXPECT_LE(largest_difference(image, loaded.image), 8 * std::exp2(-11.0F));
+}
+
+TEST(ExrFile, ChannelsHaveTypesOfTheirOwn) {
+  const TemporaryFolder folder;
+  Image image = renderer::make_image(2, 1, {"R", "G", "B", "CryptoObject00.R"});
+  const std::uint32_t identifier = 0x2e4ff723;
+  image.pixels = {1e9F, 0.1F, 0.2F, std::bit_cast<float>(identifier), 0, 0, 0, 1e9F};
+  const PixelType half = PixelType::kHalf;
+  save_image(image, folder / "frame.exr", {half, half, half, PixelType::kFloat});
+  const Image loaded = load_image(folder / "frame.exr").image;
+  const int matte = loaded.find_channel("CryptoObject00.R"), red = loaded.find_channel("R");
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(loaded.at(0, 0)[matte]), identifier);
+  EXPECT_EQ(loaded.at(1, 0)[matte], 1e9F);
+  EXPECT_EQ(loaded.at(0, 0)[red], 65504.0F);
 }
 
 TEST(ExrFile, TheSameImageIsTheSameFile) {

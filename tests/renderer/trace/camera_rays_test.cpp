@@ -56,6 +56,76 @@ TEST(CameraRays, FollowTheCamerasPlaceButNotItsScale) {
   }
 }
 
+// Where a ray meets the plane across the camera's axis at a distance.
+Vec3f at_distance(const Ray& ray, float distance) {
+  return ray.origin + ((-distance - ray.origin.z) / ray.direction.z) * ray.direction;
+}
+
+TEST(CameraRays, BlurIsTheThinLens) {
+  // A 50 mm lens at f/2 before film of 24 mm, focused at F. On the film, a point at distance z blurs to a disc of
+  // diameter c = A |z − F| / z · f / (F − f), A = f / N; the film stands at f F / (F − f) behind the lens.
+  constexpr float kFocal = 0.05F, kAperture = kFocal / 2, kFocus = 3;
+  constexpr float kFilm = kFocal * kFocus / (kFocus - kFocal);
+  Camera camera;
+  camera.vertical_fov = 2 * std::atan(0.5F * 0.024F / kFilm);
+  const CameraRays rays(camera, 300, 200, {.radius = 0.5F * kAperture, .focus_distance = kFocus});
+  const float pixel = 0.024F / 200;
+  for (const float z : {0.8F, 2.0F, 3.0F, 5.0F, 100.0F}) {
+    const float c = kAperture * std::abs(z - kFocus) / z * kFocal / (kFocus - kFocal);
+    const Vec3f point{0.1F * z, -0.05F * z, -z};
+    const Vec2f seen{150 + 0.1F * kFilm / pixel, 100 + 0.05F * kFilm / pixel};
+    float largest = 0;
+    for (int i = 0; i < 64; ++i) {
+      // Around the rim of the lens, and a film position moved until the ray meets the point.
+      const Vec2f u{float(i) / 64, 0};
+      const Vec3f miss = at_distance(rays.at(seen, u), z) - point;
+      const float per_pixel = at_distance(rays.at({151, 100}, u), z).x - at_distance(rays.at({150, 100}, u), z).x;
+      largest = std::max(largest, length(miss) / per_pixel * pixel);
+    }
+    EXPECT_NEAR(largest, 0.5F * c, 0.002F * c + 1e-7F) << z;
+  }
+}
+
+TEST(CameraRays, OrthographicLensesFocusToo) {
+  Camera camera;
+  camera.orthographic = true;
+  camera.half_height = 2;
+  const CameraRays rays(camera, 100, 100, {.radius = 0.1F, .focus_distance = 4});
+  for (const Vec2f u : {Vec2f{0, 0.3F}, {0.9F, 0.1F}, {0.4F, 0.6F}})
+    expect_near(at_distance(rays.at({75, 25}, u), 4), {1, 1, -4});
+}
+
+TEST(CameraRays, AperturesAreUniform) {
+  // Mean and mean square of the distance from the centre: 2R/3 and R²/2 of a disc; a regular polygon of n corners has
+  // R²/6 (2 + cos 2π/n) for the latter.
+  constexpr int kSide = 128;
+  for (const int blades : {0, 3, 6}) {
+    const Lens lens{.radius = 2, .focus_distance = 1, .blades = blades, .rotation = 0.3F};
+    double square = 0, x = 0, y = 0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const Vec2f p = sample_aperture(lens, {(float(i % kSide) + 0.5F) / kSide, (float(i / kSide) + 0.5F) / kSide});
+      square += double(p.x * p.x + p.y * p.y) / (kSide * kSide);
+      x += double(p.x) / (kSide * kSide), y += double(p.y) / (kSide * kSide);
+      EXPECT_LE(p.x * p.x + p.y * p.y, 4.0001F);
+    }
+    const double expected = blades == 0 ? 2 : 4.0 / 6 * (2 + std::cos(2 * double(kPi) / blades));
+    EXPECT_NEAR(square, expected, 0.02) << blades;
+    EXPECT_NEAR(x, 0, 0.02);
+    EXPECT_NEAR(y, 0, 0.02);
+  }
+}
+
+TEST(CameraRays, ConesAreAPixelWide) {
+  Camera camera;
+  camera.vertical_fov = 1;
+  const CameraRays perspective(camera, 200, 100);
+  const float apart = length(at_distance(perspective.at({100, 50}), 1) - at_distance(perspective.at({101, 50}), 1));
+  EXPECT_NEAR(perspective.at({100, 50}).cone_spread, apart, 1e-5F);
+  EXPECT_EQ(perspective.at({100, 50}).cone_width, 0);
+  camera.orthographic = true;
+  EXPECT_NEAR(CameraRays(camera, 200, 100).at({9, 9}).cone_width, 0.02F, 1e-6F);
+}
+
 TEST(CameraRays, AreUnitAndNotClipped) {
   Camera camera;
   camera.near = 0.5F;

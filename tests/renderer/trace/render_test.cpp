@@ -2,6 +2,7 @@
 
 #include "renderer/trace/render.h"
 
+#include <bit>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -214,7 +215,7 @@ TEST(Render, StatedErrorIsThatOfRepeatedFrames) {
   const Scene scene = corner_with_lamp();
   const RayTracer tracer(scene);
   const Camera camera = default_camera(scene);
-  constexpr int kFrames = 12;
+  constexpr int kFrames = 64;
   std::vector<Image> frames;
   double stated = 0;
   for (std::uint64_t seed = 0; seed < kFrames; ++seed) {
@@ -231,10 +232,140 @@ TEST(Render, StatedErrorIsThatOfRepeatedFrames) {
     spread += squares;
     value += mean * mean;
   }
-  // Stratification makes the true error smaller than the stated one, never much larger.
+  // Over other sets of seeds the ratio spreads by some three percent, as a few bright samples have much of the error.
   const double ratio = std::sqrt(spread / value / stated);
-  EXPECT_LT(ratio, 1.15);
-  EXPECT_GT(ratio, 0.3);
+  EXPECT_LT(ratio, 1.12);
+  EXPECT_GT(ratio, 0.88);
+}
+
+TEST(Render, NoiseThresholdSpendsSamplesWhereTheyAreNeeded) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(64, 48, {.samples = 512, .seed = 2});
+  options.noise_threshold = 0.1;
+  options.layers = {"samples", "variance"};
+  const Frame frame = render(tracer, default_camera(scene), two_lights(), options);
+  const int samples = frame.image.find_channel("samples.Y");
+  float least = kInfinity, most = 0;
+  double mean = 0;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const float n = frame.image.at(x, y)[samples];
+      least = std::min(least, n), most = std::max(most, n), mean += double(n) / (64 * 48);
+    }
+  }
+  EXPECT_EQ(least, 16);
+  EXPECT_EQ(most, float(frame.samples));
+  EXPECT_NEAR(mean, frame.mean_samples, 1e-6);
+  EXPECT_LT(mean, 256);
+  EXPECT_GT(most, 2 * least);
+  EXPECT_LT(frame.relative_standard_error, 0.1);
+}
+
+TEST(Render, InterruptedFramesAreWholeAndSaySo) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  std::atomic<bool> interrupted{false};
+  Control control;
+  control.interrupted = &interrupted;
+  control.report = [&](std::string_view, double fraction) { interrupted = interrupted || fraction > 0.1; };
+  RenderOptions options = sized(64, 48, {.samples = 256});
+  options.layers = {"samples"};
+  const Frame frame = render(tracer, default_camera(scene), two_lights(), options, control);
+  EXPECT_TRUE(frame.interrupted);
+  EXPECT_LT(frame.mean_samples, 100);
+  const int samples = frame.image.find_channel("samples.Y");
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) EXPECT_GE(frame.image.at(x, y)[samples], 4);
+  }
+}
+
+TEST(Render, SamplesThatAreNotFiniteAreDroppedAndCounted) {
+  // So close to a light of so many candela that the illuminance overflows.
+  Scene scene;
+  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert({0.5F, 0.5F, 0.5F}), "plane");
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {0, 1e-3F, 0}, {3e38F, 3e38F, 3e38F}}};
+  RenderOptions options = sized(16, 16, {.samples = 16});
+  options.layers = frame_layers();
+  const Frame frame = render(tracer, camera_above(2), lights, options);
+  EXPECT_GT(frame.dropped_samples, 0U);
+  for (const float value : frame.image.pixels) EXPECT_FALSE(std::isnan(value));
+}
+
+TEST(Render, ClampingHoldsEachContributionDown) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(24, 18, {.samples = 16});
+  options.layers = {"direct", "indirect", "lights"};
+  options.clamp_direct = 0.5F;
+  const Image image = render(tracer, default_camera(scene), two_lights(), options).image;
+  const Image free = render(tracer, default_camera(scene), two_lights(), sized(24, 18, {.samples = 16})).image;
+  double clamped = 0, unclamped = 0;
+  for (int y = 0; y < 18; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      const Vec3f beauty = rgb(image, x, y), direct = rgb(image, x, y, "direct");
+      EXPECT_LE(max_component(direct), 4 * 0.5001F);  // two lights, the lamp, and the lamp seen
+      expect_close(direct + rgb(image, x, y, "indirect"), beauty, 1e-5F);
+      expect_close(
+          rgb(image, x, y, "light.key") + rgb(image, x, y, "light.rim_left") + rgb(image, x, y, "light.emission"),
+          beauty, 1e-5F);
+      clamped += double(beauty.y), unclamped += double(rgb(free, x, y).y);
+    }
+  }
+  EXPECT_LT(clamped, 0.95 * unclamped);
+}
+
+TEST(Render, MattesCoverWhatIsHit) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(24, 18, {.samples = 16, .bounces = 0});
+  options.layers = {"cryptomatte"};
+  const Frame frame = render(tracer, default_camera(scene), two_lights(), options);
+  const int first = frame.image.find_channel("CryptoObject00.R");
+  ASSERT_GE(first, 0);
+  bool ball = false;
+  for (int y = 0; y < 18; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      const float* ranks = frame.image.at(x, y) + first;
+      float coverage = 0;
+      for (int i = 0; i < kMatteLevels; ++i) {
+        coverage += ranks[2 * i + 1];
+        if (i > 0) EXPECT_LE(ranks[2 * i + 1], ranks[2 * i - 1]);
+        ball = ball || std::bit_cast<std::uint32_t>(ranks[2 * i]) == matte_id("ball");
+      }
+      EXPECT_NEAR(coverage, frame.image.at(x, y)[3], 1e-5F);
+    }
+  }
+  EXPECT_TRUE(ball);
+  EXPECT_EQ(frame.mattes.size(), 2U);
+}
+
+TEST(Render, CoarseSpheresHaveASmoothTerminator) {
+  // A sphere of 12 bands with vertex normals, and light from the side: wherever the surface faces it by its normals,
+  // the picture is the smooth sphere's, ρ E cosθ / π, to the edge of the light.
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, 1, 12), lambert({0.5F, 0.5F, 0.5F}), "ball");
+  const RayTracer tracer(scene);
+  const Vec3f to_light = normalize(Vec3f{1, 0.15F, 0});
+  RenderOptions options = sized(96, 96, {.samples = 4, .bounces = 0});
+  options.box_filter = true;
+  options.layers = {"normal"};
+  Camera camera = camera_above(4);
+  camera.vertical_fov = 0.4F;
+  const Image image = render(tracer, camera, {DirectionalLight{"", -to_light, {100, 100, 100}}}, options).image;
+  int near_terminator = 0;
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      if (image.at(x, y)[3] < 1) continue;
+      const float cosine = dot(xyz(image, x, y, "normal"), to_light);
+      const float expected = 0.5F * 100 * kInvPi * std::max(cosine, 0.0F);
+      if (cosine < 0.02F) continue;  // where a pixel's samples lie on both sides
+      near_terminator += cosine < 0.2F ? 1 : 0;
+      EXPECT_NEAR(rgb(image, x, y).x, expected, 0.02F * expected + 0.05F) << x << ", " << y << ": " << cosine;
+    }
+  }
+  EXPECT_GT(near_terminator, 300);
 }
 
 TEST(Render, UnknownLayersAreRefused) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/image/mip_maps.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -68,6 +70,40 @@ TEST(TextureLookup, ColourIsDecodedBeforeFilteringAndAlphaNever) {
   EXPECT_NEAR(middle.y, 0.502887F, 1e-5F);             // the power law
   EXPECT_NEAR(middle.z, 10 / 255.0F / 12.92F, 1e-6F);  // the straight part
   EXPECT_NEAR(middle.w, 0.2F, 1e-6F);
+}
+
+TEST(TextureLookup, LevelsHaveFourToEightTexelsAcrossTheFootprint) {
+  for (const auto& [across, level] : {std::pair{0.0F, 0}, {7.9F, 0}, {8.1F, 1}, {15.9F, 1}, {16.1F, 2}, {65.0F, 4}}) {
+    EXPECT_EQ(mip_level_of(across * across), level) << across;
+  }
+  EXPECT_EQ(mip_level_of(std::nanf("")), 0);
+  EXPECT_GE(mip_level_of(kInfinity), 30);
+}
+
+TEST(TextureLookup, LevelsAreLookedUpAtTheSamePlace) {
+  // A ramp across an 8 × 8 texture stays that ramp on coarser levels, away from the sides.
+  Texture texture{"", 8, 8, {}};
+  for (int i = 0; i < 64; ++i) texture.rgba.insert(texture.rgba.end(), {std::uint8_t(32 * (i % 8)), 0, 0, 255});
+  texture.wrap_u = Wrap::kClampToEdge;
+  make_mip_maps(texture, {});
+  for (const float u : {0.3F, 0.5F, 0.6F}) {
+    const float full = look_up(texture, {u, 0.5F}, false).x;
+    EXPECT_NEAR(look_up(texture, {u, 0.5F}, false, 1).x, full, 0.003F) << u;
+    EXPECT_NEAR(look_up(texture, {u, 0.5F}, false, 2).x, full, 0.003F) << u;
+  }
+  EXPECT_NEAR(look_up(texture, {0.9F, 0.5F}, false, 99).x, 3.5F * 32 / 255, 0.003F);
+}
+
+TEST(TextureLookup, AlphaAloneIsThatOfTheColour) {
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge}) {
+    Texture texture = row(wrap);
+    for (const bool nearest : {false, true}) {
+      texture.nearest = nearest;
+      for (float u = -1.3F; u < 2.5F; u += 0.17F) {
+        EXPECT_NEAR(look_up_alpha(texture, {u, 0.3F}), look_up(texture, {u, 0.3F}, true).w, 1e-6F) << u;
+      }
+    }
+  }
 }
 
 TEST(TextureLookup, LargeAndBrokenCoordinatesAreHarmless) {

@@ -1,0 +1,56 @@
+#include "cli/lens_options.h"
+
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/add_options.h"
+#include "cli/usage_error.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr CountRange kBlades{3, 64};
+constexpr float kAllSharp = 1e6F;  // metres
+
+float focal_length(const LensOptions& options, const renderer::Camera& camera) {
+  if (options.focal_length) return *options.focal_length;
+  if (camera.orthographic) {
+    throw UsageError("--f-number: an orthographic camera has no focal length (expected --focal-length too)");
+  }
+  return 0.5F * options.sensor_height / std::tan(0.5F * camera.vertical_fov);
+}
+
+float distance_in_the_middle(const renderer::Camera& camera, const renderer::RayTracer& tracer) {
+  const auto hit = tracer.intersect(renderer::CameraRays(camera, 2, 2).at({1, 1}));
+  return hit ? hit->distance : kAllSharp;
+}
+
+}  // namespace
+
+void add_lens_options(CLI::App& command, LensOptions& options) {
+  CLI::Option* f_number =
+      add_number(command, {"--f-number", "N", "Depth of field of a lens of this f-number (default: all is sharp)"},
+                 options.f_number, kPositive);
+  const auto add = [&](const OptionText& text, auto& value) {
+    add_number(command, text, value, kPositive)->needs(f_number);
+  };
+  add({"--focus-distance", "M", "Metres to what is sharp (default: to what the frame's middle shows)"},
+      options.focus_distance);
+  add({"--focal-length", "MM", "Of the lens (default: by the camera's field); the field stays the camera's"},
+      options.focal_length);
+  add({"--sensor-height", "MM", "Of the film, which the focal length follows from (default 24)"},
+      options.sensor_height);
+  add_count(command, {"--blades", "N", "Blades of the aperture (default: round)"}, options.blades, kBlades)
+      ->needs(f_number);
+}
+
+renderer::Lens lens_of(const LensOptions& options, const renderer::Camera& camera, const renderer::RayTracer& tracer) {
+  if (!options.f_number) return {};
+  constexpr float kMetres = 1e-3F;
+  return {.radius = 0.5F * kMetres * focal_length(options, camera) / *options.f_number,
+          .focus_distance = options.focus_distance ? *options.focus_distance : distance_in_the_middle(camera, tracer),
+          .blades = options.blades};
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,50 @@
+#include "renderer/image/texel_encoding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace chiaro::renderer {
+namespace {
+
+DecodeTable make_srgb_table() {
+  DecodeTable table;
+  for (int i = 0; i < 256; ++i) {
+    const double v = i / 255.0;
+    table[i] = float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+  }
+  return table;
+}
+
+DecodeTable make_linear_table() {
+  DecodeTable table;
+  for (int i = 0; i < 256; ++i) table[i] = float(i) / 255.0F;
+  return table;
+}
+
+// Fine enough for the darkest step of sRGB, 1/3295.
+constexpr int kEncodeSteps = 1 << 15;
+
+std::vector<std::uint8_t> make_encode_table() {
+  std::vector<std::uint8_t> table(kEncodeSteps + 1);
+  for (int i = 0; i <= kEncodeSteps; ++i) {
+    const double v = double(i) / kEncodeSteps;
+    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    table[i] = std::uint8_t(std::lround(255 * encoded));
+  }
+  return table;
+}
+
+}  // namespace
+
+const DecodeTable& decode_table(bool srgb) {
+  static const DecodeTable kSrgb = make_srgb_table(), kLinear = make_linear_table();
+  return srgb ? kSrgb : kLinear;
+}
+
+std::uint8_t encode_srgb(float linear) {
+  static const std::vector<std::uint8_t> kTable = make_encode_table();
+  return kTable[std::size_t(std::clamp(linear, 0.0F, 1.0F) * kEncodeSteps + 0.5F)];
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,76 @@
+#include "renderer/image/mip_maps.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "renderer/image/texel_encoding.h"
+
+namespace chiaro::renderer {
+namespace {
+
+// Texels of all values, without order.
+Texture noise(int width, int height) {
+  Texture texture{"", width, height, {}};
+  std::uint32_t state = 1;
+  for (int i = 0; i < 4 * width * height; ++i)
+    texture.rgba.push_back(std::uint8_t((state = 1664525U * state + 1013904223U) >> 24));
+  return texture;
+}
+
+double mean(const MipLevel& level, int channel, bool srgb) {
+  double sum = 0;
+  const std::size_t count = std::size_t(level.width) * level.height;
+  for (std::size_t i = 0; i < count; ++i) sum += double(decode_table(srgb)[level.texels[4 * i + channel]]);
+  return sum / double(count);
+}
+
+TEST(MipMaps, EveryLevelHasTheMeanOfTheTexture) {
+  // Rounding to 8 bits of N texels moves the mean by at most half a step, and mostly by far less.
+  for (const auto& [width, height] : {std::pair{64, 64}, {37, 53}, {100, 3}, {1, 7}}) {
+    for (const bool srgb : {false, true}) {
+      Texture texture = noise(width, height);
+      make_mip_maps(texture, {.srgb = srgb});
+      for (int k = 1; k <= int(texture.mips.size()); ++k) {
+        for (int c = 0; c < 4; ++c) {
+          const bool decoded = srgb && c < 3;
+          const double expected = mean(mip_level(texture, 0), c, decoded);
+          EXPECT_NEAR(mean(mip_level(texture, k), c, decoded), expected, 0.005) << width << ", level " << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(MipMaps, GoDownToOneTexelInAThirdMoreMemory) {
+  Texture texture = noise(64, 16);
+  make_mip_maps(texture, {});
+  EXPECT_EQ(texture.mips.size(), 6U);
+  EXPECT_EQ(texture.mips.back().size(), 4U);
+  std::size_t bytes = 0;
+  for (const auto& mip : texture.mips) bytes += mip.size();
+  EXPECT_LE(double(bytes), double(texture.rgba.size()) / 3 * 1.01);
+}
+
+TEST(MipMaps, ColoursAreAveragedInLinearLight) {
+  Texture texture{"", 2, 1, {0, 0, 0, 255, 255, 255, 255, 255}};
+  Texture data = texture;
+  make_mip_maps(texture, {.srgb = true});
+  make_mip_maps(data, {});
+  EXPECT_EQ(texture.mips[0][0], 188);  // sRGB of one half
+  EXPECT_EQ(data.mips[0][0], 128);
+}
+
+TEST(MipMaps, WhatIsNotThereHasNoSayInTheColour) {
+  Texture texture{"", 2, 2, {200, 10, 20, 255, 0, 255, 0, 0, 200, 10, 20, 255, 0, 255, 0, 0}};
+  make_mip_maps(texture, {.alpha_weighted = true});
+  EXPECT_EQ(texture.mips[0], (std::vector<std::uint8_t>{200, 10, 20, 128}));
+}
+
+TEST(MipMaps, EncodingIsTheInverseOfDecoding) {
+  for (int i = 0; i < 256; ++i) EXPECT_EQ(encode_srgb(decode_table(true)[i]), i);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
