@@ -41,7 +41,7 @@ int run_illuminate(const IlluminateCommand& options) {
   Session session(options.common);
   require_writable(options.output);
   const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
-  const renderer::Lights lights = choose_lights(stage, options.lights);
+  const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   require_light(stage, lights);
   inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);
   const TracedTarget traced = trace_target(*stage.tracer, std::move(receivers), lights,

@@ -38,8 +38,9 @@ inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& s
   }
   if (strokes.base == inverse::StrokeBase::kBlack)
     return black_target(choose_receivers(*stage.tracer, options.surface));
-  require_light(stage, stage.lights);
-  return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), stage.lights,
+  const renderer::Lights lights = choose_lights(stage, "", options.transport.environment, session);
+  require_light(stage, lights);
+  return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), lights,
                       trace_options(options.transport, options.common), session.control())
       .target;
 }

@@ -80,7 +80,7 @@ int run_render(const RenderCommand& options) {
   Session session(options.common);
   require_outputs(options);
   const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
-  const renderer::Lights lights = choose_lights(stage, options.lights);
+  const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   warn_of_darkness(stage, lights, session);
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,

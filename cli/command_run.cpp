@@ -119,6 +119,7 @@ int run_run(const RunCommand& options) {
   warn_of_scene_lights(stage, options.choices, session);
   const inverse::Target target = load_solve_target(stage, options.choices);
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);
+  problem.kept_lights = lights_that_stay(stage, options.choices, session);
   make_folders(options);
   const JsonObject baked = bake_cache(options, stage, target, problem, session);
   problem.cache_file = options.folder() / "cache.exr";

@@ -60,6 +60,7 @@ int run_solve(const SolveCommand& options) {
   const inverse::Target target = load_solve_target(stage, options.choices);
   session.stop_if_interrupted();
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);
+  problem.kept_lights = lights_that_stay(stage, options.choices, session);
   use_cache(options, problem);
   const inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());

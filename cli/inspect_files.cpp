@@ -34,7 +34,7 @@ Inspection start_inspection(const std::string& kind, const std::string& file) {
 
 Inspection inspect_light_file(const std::string& file) {
   Inspection inspection = start_inspection("light file", file);
-  add_lights(inspection, renderer::load_lights(file));
+  add_lights(inspection, renderer::load_lights(file, inspection.warnings));
   return inspection;
 }
 

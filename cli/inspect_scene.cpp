@@ -80,6 +80,10 @@ struct LightJson {
   JsonObject operator()(const renderer::DirectionalLight& l) const {
     return {{"type", "directional"}, {"name", l.name}, {"direction", l.direction}, {"intensity", l.illuminance}};
   }
+  JsonObject operator()(const renderer::EnvironmentLight& l) const {
+    return {{"type", "environment"},   {"name", l.name},         {"image", l.image},        {"width", l.map->width},
+            {"height", l.map->height}, {"rotation", l.rotation}, {"intensity", l.intensity}};
+  }
 };
 
 struct LightText {
@@ -93,6 +97,10 @@ struct LightText {
   }
   std::string operator()(const renderer::DirectionalLight& l) const {
     return fmt::format("directional towards {}, {} lux", text_of_vector(l.direction), text_of_vector(l.illuminance));
+  }
+  std::string operator()(const renderer::EnvironmentLight& l) const {
+    return fmt::format("environment of {} x {} pixels, times {:.4g} cd/m², turned by {:.4g}°", l.map->width,
+                       l.map->height, l.intensity, double(l.rotation) * kDegreesPerRadian);
   }
 };
 

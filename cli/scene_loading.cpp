@@ -27,8 +27,22 @@ LoadedStage load_stage(const std::string& path, const MaterialOptions& materials
   return stage;
 }
 
-renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file) {
-  return light_file.empty() ? stage.lights : renderer::load_lights(light_file);
+renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file,
+                               const EnvironmentOptions& environment, Session& session) {
+  std::vector<std::string> warnings;
+  renderer::Lights lights = light_file.empty() ? stage.lights : renderer::load_lights(light_file, warnings);
+  if (std::none_of(lights.begin(), lights.end(), renderer::is_environment)) {
+    std::copy_if(stage.lights.begin(), stage.lights.end(), std::back_inserter(lights), renderer::is_environment);
+  }
+  lights = with_environment(std::move(lights), environment, warnings);
+  session.warn(warnings);
+  return lights;
+}
+
+renderer::Lights environment_of(const LoadedStage& stage, const EnvironmentOptions& options, Session& session) {
+  renderer::Lights lights = choose_lights(stage, "", options, session);
+  std::erase_if(lights, [](const renderer::Light& light) { return !renderer::is_environment(light); });
+  return lights;
 }
 
 bool has_emission(const renderer::Scene& scene) {

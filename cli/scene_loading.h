@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "cli/environment_options.h"
 #include "cli/material_options.h"
 #include "cli/session.h"
 #include "renderer/scene/light.h"
@@ -22,8 +23,13 @@ struct LoadedStage {
 // triangles.
 LoadedStage load_stage(const std::string& path, const MaterialOptions& materials, Session& session);
 
-// The lights of the file if one is named, else those of the scene.
-renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file);
+// The lights of the file if one is named, else those of the scene; with the environment that the options ask for, or
+// else the file's, or else the scene's, which belongs to it as emissive surfaces do.
+renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file,
+                               const EnvironmentOptions& environment, Session& session);
+
+// What shines whatever the light file says: the environment alone.
+renderer::Lights environment_of(const LoadedStage& stage, const EnvironmentOptions& options, Session& session);
 
 bool has_emission(const renderer::Scene& scene);
 

@@ -1,5 +1,7 @@
 #include "cli/solve_options.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cli/add_options.h"
@@ -73,6 +75,12 @@ inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& 
   return target;
 }
 
+renderer::Lights lights_that_stay(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
+  const EnvironmentOptions& environment = choices.transport.environment;
+  return choices.keep_lights ? choose_lights(stage, "", environment, session)
+                             : environment_of(stage, environment, session);
+}
+
 inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,
                                     const SolveChoices& choices, const CommonOptions& common) {
   return {.tracer = *stage.tracer,
@@ -80,7 +88,7 @@ inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Tar
           .cache_file = {},
           .grid = light_grid_options(*stage.scene, choices.grid),
           .bake = bake_settings(choices.transport, common),
-          .kept_lights = choices.keep_lights ? stage.lights : renderer::Lights{}};
+          .kept_lights = {}};
 }
 
 inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOptions& common) {
@@ -90,9 +98,11 @@ inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOpt
 }
 
 void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
-  if (stage.lights.empty() || choices.keep_lights) return;
-  session.warn(fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path,
-                           stage.lights.size()));
+  const auto own = stage.lights.size() -
+                   std::size_t(std::count_if(stage.lights.begin(), stage.lights.end(), renderer::is_environment));
+  if (own == 0 || choices.keep_lights) return;
+  session.warn(
+      fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path, own));
 }
 
 void save_found_lights(const std::string& scene, const inverse::SolveResult& result, const std::string& output,

@@ -23,7 +23,10 @@ void add_solve_options(CLI::App& command, SolveChoices& choices);
 
 inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& choices);
 
-// The problem without a cache file. It refers to the stage and the target.
+// What stays lit: the environment, and with --keep-lights the scene's other lights.
+renderer::Lights lights_that_stay(const LoadedStage& stage, const SolveChoices& choices, Session& session);
+
+// The problem without a cache file and without lights that stay. It refers to the stage and the target.
 inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,
                                     const SolveChoices& choices, const CommonOptions& common);
 

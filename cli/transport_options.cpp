@@ -20,6 +20,7 @@ void add_transport_options(CLI::App& command, TransportOptions& options, const s
             {1, kMaxSamples});
   add_count(command, {"--bounces", "B", "Indirect bounces, 0 = direct only (default: until they no longer matter)"},
             options.bounces, {0, kMaxBounces});
+  add_environment_options(command, options.environment);
   add_material_options(command, options.materials);
 }
 

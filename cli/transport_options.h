@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/common_options.h"
+#include "cli/environment_options.h"
 #include "cli/material_options.h"
 #include "inverse/transport/light_grid.h"
 #include "inverse/transport/receivers.h"
@@ -17,6 +18,7 @@ struct TransportOptions {
   MaterialOptions materials;
   int samples = 256;
   std::optional<int> bounces;  // indirect ones; absent: until they no longer matter
+  EnvironmentOptions environment = {};
 };
 
 // `samples_help` says what is sampled; the default is added to it.

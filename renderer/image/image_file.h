@@ -23,7 +23,8 @@ using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
 
 struct ImageFile {
   Image image;
-  Attributes attributes;  // those of the kinds above
+  Attributes attributes;    // those of the kinds above
+  bool srgb_curve = false;  // values are on the sRGB curve, as whole-number pixels are where the file says nothing else
 };
 
 // Any file that OpenImageIO reads, values as stored (8-bit as 0 to 1, no colour conversion). Error where unreadable,

@@ -99,4 +99,8 @@ std::optional<std::array<float, 8>> known_chromaticities(const Rec709FromSpace& 
   return std::nullopt;
 }
 
+Rec709FromSpace rec709_from_chromaticities(const std::array<float, 8>& chromaticities) {
+  return rec709_from(chromaticities);
+}
+
 }  // namespace chiaro::renderer

@@ -9,8 +9,9 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr std::string_view kRead[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization",
-                                      "EXT_texture_webp", "EXT_mesh_gpu_instancing"};
+constexpr std::string_view kRead[] = {"KHR_lights_punctual",     "KHR_materials_emissive_strength",
+                                      "KHR_mesh_quantization",   "EXT_texture_webp",
+                                      "EXT_mesh_gpu_instancing", "EXT_lights_image_based"};
 
 // They change nothing that is rendered: what a scene looks like without them is what it looks like.
 constexpr std::string_view kWithoutEffect[] = {"KHR_materials_variants",  "KHR_xmp",

@@ -20,6 +20,8 @@ constexpr JsonRule numbers(std::string_view path, int size, double low = -kLarge
 }
 constexpr std::string_view kLightArray = "extensions.KHR_lights_punctual.lights";
 
+constexpr std::string_view kEnvironmentArray = "extensions.EXT_lights_image_based.lights";
+
 constexpr JsonRule kRules[] = {
     {"asset", kObject, kRequired},
     {"asset.version", kString, kRequired},
@@ -148,6 +150,15 @@ constexpr JsonRule kRules[] = {
     number("extensions.KHR_lights_punctual.lights.[].spot.innerConeAngle", 0, 1.5707964),
     number("extensions.KHR_lights_punctual.lights.[].spot.outerConeAngle", 0, 1.5707964),
 
+    {"extensions.EXT_lights_image_based", kObject},
+    {kEnvironmentArray, kArray, kRequired},
+    {"extensions.EXT_lights_image_based.lights.[]", kObject},
+    {"extensions.EXT_lights_image_based.lights.[].name", kString},
+    numbers("extensions.EXT_lights_image_based.lights.[].rotation", 4),
+    number("extensions.EXT_lights_image_based.lights.[].intensity", 0),
+    {"extensions.EXT_lights_image_based.lights.[].specularImages", kArray, kRequired},
+    {"extensions.EXT_lights_image_based.lights.[].specularImages.[]", kIndices, kOptional, "images"},
+
     {"nodes", kArray},
     {"nodes.[]", kObject},
     {"nodes.[].name", kString},
@@ -168,6 +179,9 @@ constexpr JsonRule kRules[] = {
     {"scenes", kArray},
     {"scenes.[]", kObject},
     {"scenes.[].nodes", kIndices, kOptional, "nodes"},
+    {"scenes.[].extensions", kObject},
+    {"scenes.[].extensions.EXT_lights_image_based", kObject},
+    index("scenes.[].extensions.EXT_lights_image_based.light", kEnvironmentArray, kRequired),
     index("scene", "scenes"),
 };
 

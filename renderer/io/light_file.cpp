@@ -9,8 +9,10 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/io/environment_file.h"
 #include "renderer/io/gltf_container.h"
 #include "renderer/io/gltf_document.h"
+#include "renderer/io/gltf_environment.h"
 #include "renderer/io/gltf_lights.h"
 #include "renderer/io/short_decimal.h"
 
@@ -95,13 +97,45 @@ SpotLight read_spot(const Entry& entry, const std::string& name) {
   return light;
 }
 
-Light read_light(const Entry& entry, const std::string& default_name) {
+// Within the file's own folder: a light file from elsewhere does not open what it likes.
+std::filesystem::path read_image_path(const Entry& entry) {
+  const std::string expected = "the name of an image in the light file's folder";
+  const std::string name = read_string(entry, "image", "");
+  const std::filesystem::path image = std::filesystem::path(name).lexically_normal();
+  if (name.empty()) fail(entry, "image", "is missing", expected);
+  if (image.is_absolute() || *image.begin() == "..") {
+    fail(entry, "image", fmt::format("\"{}\" is outside the light file's folder", name.substr(0, 200)), expected);
+  }
+  return std::filesystem::path(entry.file).parent_path() / image;
+}
+
+float read_factor(const Entry& entry, const char* field, float low, float high, const std::string& expected) {
+  const auto value = entry.fields.find(field);
+  const float factor = checked_float(entry, field, *value, expected);
+  if (factor < low || factor > high) fail(entry, field, fmt::format("is {}", factor), expected);
+  return factor;
+}
+
+EnvironmentLight read_environment_light(const Entry& entry, std::vector<std::string>& warnings) {
+  EnvironmentLight light = load_environment(read_image_path(entry), warnings);
+  light.name = read_string(entry, "name", light.name);
+  if (entry.fields.contains("rotation")) {
+    light.rotation = read_factor(entry, "rotation", -2 * kPi, 2 * kPi, "-2π to 2π radians");
+  }
+  if (entry.fields.contains("intensity")) {
+    light.intensity = read_factor(entry, "intensity", 0, 1e15F, "one number, not negative, cd/m² of a pixel of 1");
+  }
+  return light;
+}
+
+Light read_light(const Entry& entry, const std::string& default_name, std::vector<std::string>& warnings) {
   if (!entry.fields.is_object()) throw Error({entry.file, entry.place, "is not an object", "a light"});
   const std::string type = read_string(entry, "type", "point"), name = read_string(entry, "name", default_name);
   if (type == "point") return PointLight{name, read_position(entry), read_intensity(entry, "candela")};
   if (type == "spot") return read_spot(entry, name);
   if (type == "directional") return DirectionalLight{name, read_direction(entry), read_intensity(entry, "lux")};
-  fail(entry, "type", fmt::format("is \"{}\"", type.substr(0, 40)), "point, spot or directional");
+  if (type == "environment") return read_environment_light(entry, warnings);
+  fail(entry, "type", fmt::format("is \"{}\"", type.substr(0, 40)), "point, spot, directional or environment");
 }
 
 json parse(const std::string& text, const std::string& file) {
@@ -114,22 +148,27 @@ json parse(const std::string& text, const std::string& file) {
   }
 }
 
-Lights read_json_lights(const json& root, const std::string& file) {
+Lights read_json_lights(const json& root, const std::string& file, std::vector<std::string>& warnings) {
   if (!root.is_object() || !root.contains("lights") || !root["lights"].is_array()) {
     throw Error({file, "lights", "is missing", "a light file, {\"lights\":[…]}"});
   }
   Lights lights;
   for (const json& fields : root["lights"]) {
     const std::size_t index = lights.size();
-    lights.push_back(read_light({fields, file, fmt::format("lights[{}]", index)}, fmt::format("light {}", index)));
+    const Entry entry{fields, file, fmt::format("lights[{}]", index)};
+    lights.push_back(read_light(entry, fmt::format("light {}", index), warnings));
   }
   return lights;
 }
 
-Lights read_gltf_lights(const std::filesystem::path& path) {
-  const GltfDocument document = open_gltf(path);
-  std::vector<std::string> warnings;
-  return read_lights(document, place_nodes(document), warnings);
+Lights read_gltf_lights(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  GltfDocument document = open_gltf(path);
+  Lights lights = read_lights(document, place_nodes(document), warnings);
+  if (has_environment(document)) {
+    load_buffers(document);
+    if (auto environment = read_environment(document, warnings)) lights.push_back(*std::move(environment));
+  }
+  return lights;
 }
 
 ordered_json json_of(Vec3f v) { return {short_decimal(v.x), short_decimal(v.y), short_decimal(v.z)}; }
@@ -151,32 +190,57 @@ ordered_json json_of(const DirectionalLight& light) {
   return {{"type", "directional"}, {"direction", json_of(light.direction)}, {"intensity", json_of(light.illuminance)}};
 }
 
+ordered_json json_of(const EnvironmentLight& light) {
+  return {{"type", "environment"},
+          {"image", light.image},
+          {"rotation", short_decimal(light.rotation)},
+          {"intensity", short_decimal(light.intensity)}};
+}
+
 ordered_json json_of(const Light& light) {
   ordered_json fields = std::visit([](const auto& l) { return json_of(l); }, light);
   if (!name_of(light).empty()) fields["name"] = name_of(light);
   return fields;
 }
 
+// The image's name from the light file's folder.
+std::string image_beside(const EnvironmentLight& light, const std::filesystem::path& path) {
+  const auto folder = std::filesystem::absolute(path).parent_path().lexically_normal();
+  const auto image = std::filesystem::absolute(light.image).lexically_normal().lexically_relative(folder);
+  if (light.image.empty() || image.empty() || *image.begin() == "..") {
+    throw Error({path.string(), fmt::format("light \"{}\"", light.name), "has no image in the light file's folder",
+                 "an environment read from there"});
+  }
+  return image.string();
+}
+
 // Names that are not UTF-8 do not stop a light from being saved.
-std::string dumped(const Light& light) {
-  return json_of(light).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+std::string dumped(const Light& light, const std::filesystem::path& path) {
+  ordered_json fields = json_of(light);
+  if (is_environment(light)) fields["image"] = image_beside(std::get<EnvironmentLight>(light), path);
+  return fields.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
 
-Lights load_lights(const std::filesystem::path& path) {
+Lights load_lights(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   const std::string bytes = read_file(path);
   const bool binary = is_glb(bytes);
   const json root = binary ? json() : parse(bytes, path.string());
   const bool gltf = binary || (root.is_object() && root.contains("asset"));
-  Lights lights = gltf ? read_gltf_lights(path) : read_json_lights(root, path.string());
+  Lights lights = gltf ? read_gltf_lights(path, warnings) : read_json_lights(root, path.string(), warnings);
   if (lights.empty()) throw Error({path.string(), "lights", "there are none", "at least one light"});
   return lights;
 }
 
+Lights load_lights(const std::filesystem::path& path) {
+  std::vector<std::string> warnings;
+  return load_lights(path, warnings);
+}
+
 void save_lights(const Lights& lights, const std::filesystem::path& path) {
   std::string text = "{\"lights\":[";
-  for (std::size_t i = 0; i < lights.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + dumped(lights[i]);
+  for (std::size_t i = 0; i < lights.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + dumped(lights[i], path);
   text += "\n]}\n";
   write_file_atomically(path, text);
 }

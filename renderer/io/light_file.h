@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "renderer/scene/light.h"
 
@@ -9,9 +11,12 @@ namespace chiaro::renderer {
 // A light file: .glb/.gltf with KHR_lights_punctual, or JSON {"lights":[{"type":"point","position":[x,y,z],
 // "intensity":[r,g,b]}, …]} (types and fields: the README's "Light files"). Error, naming the light and field, where a
 // value is missing, of the wrong kind, not finite or negative, where a direction is zero, or where there are no lights.
+// The image of an environment is a file in the light file's own folder or below.
+Lights load_lights(const std::filesystem::path& path, std::vector<std::string>& warnings);
+// The same, without its warnings.
 Lights load_lights(const std::filesystem::path& path);
 
-// The JSON form.
+// The JSON form. Error for an environment whose image is not in the folder of `path`.
 void save_lights(const Lights& lights, const std::filesystem::path& path);
 
 }  // namespace chiaro::renderer

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "renderer/io/gltf_document.h"
+#include "renderer/io/gltf_environment.h"
 #include "renderer/io/gltf_lights.h"
 #include "renderer/io/gltf_materials.h"
 #include "renderer/io/gltf_nodes.h"
@@ -143,6 +144,7 @@ LoadedScene load_gltf(const std::filesystem::path& path) {
 
   scene.cameras = read_cameras(document, nodes);
   loaded.lights = read_lights(document, nodes, loaded.warnings);
+  if (auto environment = read_environment(document, loaded.warnings)) loaded.lights.push_back(*std::move(environment));
   return loaded;
 }
 

@@ -12,7 +12,7 @@ namespace chiaro::renderer {
 
 struct LoadedScene {
   Scene scene;
-  Lights lights;                      // KHR_lights_punctual, in world space
+  Lights lights;                      // KHR_lights_punctual, in world space; last EXT_lights_image_based
   std::vector<std::string> warnings;  // one line each, what was left out or repaired
 };
 

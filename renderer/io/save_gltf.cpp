@@ -89,6 +89,11 @@ LightAndNode make(const DirectionalLight& light) {
   return made;
 }
 
+LightAndNode make(const EnvironmentLight& light) {
+  throw Error({"", fmt::format("light \"{}\"", light.name), "KHR_lights_punctual has no environments",
+               "point, spot and directional lights"});
+}
+
 void use_extension(ordered_json& root) {
   ordered_json& used = root["extensionsUsed"];
   if (std::find(used.begin(), used.end(), kExtension) == used.end()) used.push_back(kExtension);

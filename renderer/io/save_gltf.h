@@ -12,7 +12,7 @@ struct AddLightsOptions {
 
 // Writes `scene_path` (.glb or .gltf) as `path` (.glb, or .gltf with data embedded) with KHR_lights_punctual nodes for
 // `lights` added at the root of its default scene. All else in the file — meshes, images, extensions unknown to us — is
-// kept as it is; external buffers and images are embedded.
+// kept as it is; external buffers and images are embedded. Error for environments, which the extension has none of.
 void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights& lights,
                            const std::filesystem::path& path, const AddLightsOptions& options);
 

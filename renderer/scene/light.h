@@ -2,11 +2,12 @@
 // Lights, in photometric units per Rec.709 channel. To add a kind: add a struct, list it in Light, and follow the
 // compiler through the std::visit calls (trace/light_sampling, io/light_file, io/gltf_lights).
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "renderer/core/vec.h"
+#include "renderer/scene/environment_map.h"
 
 namespace chiaro::renderer {
 
@@ -32,11 +33,22 @@ struct DirectionalLight {
   Vec3f illuminance;          // lux, on a plane across the direction
 };
 
-using Light = std::variant<PointLight, SpotLight, DirectionalLight>;
+// Light from infinitely far away, all around.
+struct EnvironmentLight {
+  std::string name;
+  std::shared_ptr<const EnvironmentMap> map;
+  float rotation = 0;   // radians about +Y
+  float intensity = 1;  // radiance, cd/m², of a pixel of 1
+  std::string image;    // the file that the map was read from; empty: none of its own
+};
+
+using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentLight>;
 using Lights = std::vector<Light>;
 
 inline const std::string& name_of(const Light& light) {
   return std::visit([](const auto& l) -> const std::string& { return l.name; }, light);
 }
+
+inline bool is_environment(const Light& light) { return std::holds_alternative<EnvironmentLight>(light); }
 
 }  // namespace chiaro::renderer

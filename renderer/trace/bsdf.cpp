@@ -34,6 +34,12 @@ float Bsdf::shadow_terminator(Vec3f to_light) const {
   return g > 0 ? (g < 1 ? g * (1 + g - g * g) : 1) : 0;
 }
 
+Bsdf::Sketch Bsdf::sketch() const {
+  const float color = max_component(base_color_);
+  if (lambert_) return {color, 0, 1};
+  return {(1 - metallic_) * color, (1 - metallic_) * kDielectricF0 + metallic_ * color, alpha_};
+}
+
 Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
   if (wo.z <= 0 || wi.z <= 0 || !above_horizon(to_light)) return {};

@@ -21,6 +21,12 @@ class Bsdf {
  public:
   explicit Bsdf(const SurfacePoint& point);
   Vec3f normal() const { return frame_.normal; }  // shading normal
+  // How much it scatters, roughly: a diffuse part, and one about the mirror direction.
+  struct Sketch {
+    float diffuse = 1, specular = 0;  // albedo; specular at normal incidence
+    float alpha = 1;                  // GGX
+  };
+  Sketch sketch() const;
 
   // f · cosθ_i, per channel; zero below the shading normal's horizon, and where the light is below both the triangle's
   // and the smooth surface's that vertex normals stand for.

@@ -7,6 +7,8 @@
 namespace chiaro::renderer {
 namespace {
 
+constexpr std::uint32_t kNoEmitter = ~0U;
+
 // The full sphere, or a spot's outer cone.
 struct EmissionCone {
   Vec3f origin, axis{0, 0, 1};
@@ -39,6 +41,8 @@ struct PunctualVisitor {
   PunctualSample operator()(const DirectionalLight& light) const {
     return {-light.direction, kInfinity, light.illuminance};
   }
+
+  PunctualSample operator()(const EnvironmentLight&) const { return {{0, 0, 1}, kInfinity, {}}; }
 
   PunctualSample arriving(Vec3f position, Vec3f intensity) const {
     const Vec3f d = position - point;
@@ -73,19 +77,14 @@ PunctualEmission::PunctualEmission(const Lights& lights) : lights_(lights) {
   for (const Light& light : lights) {
     const EmissionCone cone = emission_cone(light);
     power_.push_back(cone.solid_angle() * max_component(cone.intensity));
-    total_power_ += power_.back();
+    power_end_.push_back((power_end_.empty() ? 0 : power_end_.back()) + double(power_.back()));
   }
+  total_power_ = power_end_.empty() ? 0 : float(power_end_.back());
 }
 
 PunctualEmission::Sample PunctualEmission::sample(float pick, Vec2f u) const {
-  float left = pick * total_power_;
-  std::size_t chosen = 0;
-  for (std::size_t i = 0; i < power_.size(); ++i) {
-    if (!(power_[i] > 0)) continue;
-    chosen = i;
-    left -= power_[i];
-    if (left < 0) break;
-  }
+  const double at = std::min(double(pick), 1 - 1e-9) * power_end_.back();
+  const auto chosen = std::size_t(std::upper_bound(power_end_.begin(), power_end_.end(), at) - power_end_.begin());
   const EmissionCone cone = emission_cone(lights_[chosen]);
   const float z = 1 - u.x * (1 - cone.cos_outer), sine = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * kPi * u.y;
   Sample s{
@@ -103,38 +102,41 @@ float PunctualEmission::pdf(std::size_t light, Vec3f direction) const {
   return power_[light] / (total_power_ * cone.solid_angle());
 }
 
-EmissiveTriangles::EmissiveTriangles(const Scene& scene) : scene_(scene), probability_(scene.instances.size()) {
-  std::vector<double> power;
-  double total = 0;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    if (max_component(scene.materials[mesh.material].emission) <= 0) continue;
-    probability_[i].assign(mesh.triangles.size(), 0.0F);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      Vec3f p[3];
-      for (int k = 0; k < 3; ++k)
-        p[k] = transform_point(instance.world_from_object, mesh.positions[mesh.triangles[t][k]]);
-      const Vec3f n = cross(p[1] - p[0], p[2] - p[0]);
-      const float area = 0.5F * length(n);
-      if (!(area > 0)) continue;
-      triangles_.push_back({i, t, p[0], p[1], p[2], n / (2 * area), area});
-      power.push_back(double(area) * mean_emission(scene, mesh, t));
-      total += power.back();
+EmissiveTriangles::EmissiveTriangles(const Scene& scene) : scene_(scene), emitter_(scene.instances.size()) {
+  std::vector<LightBounds> bounds;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) add_instance(i, bounds);
+  tree_ = LightTree(bounds);
+}
+
+void EmissiveTriangles::add_instance(std::uint32_t index, std::vector<LightBounds>& bounds) {
+  const Instance& instance = scene_.instances[index];
+  const Mesh& mesh = scene_.meshes[instance.mesh];
+  if (max_component(scene_.materials[mesh.material].emission) <= 0) return;
+  emitter_[index].assign(mesh.triangles.size(), kNoEmitter);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    Vec3f p[3];
+    LightBounds b;
+    for (int k = 0; k < 3; ++k) {
+      p[k] = transform_point(instance.world_from_object, mesh.positions[mesh.triangles[t][k]]);
+      b.box.extend(p[k]);
     }
-  }
-  double sum = 0;
-  for (std::size_t k = 0; k < triangles_.size(); ++k) {
-    sum += power[k];
-    cumulative_.push_back(float(sum / total));
-    probability_[triangles_[k].instance][triangles_[k].triangle] = float(power[k] / total);
+    const Vec3f n = cross(p[1] - p[0], p[2] - p[0]);
+    const float area = 0.5F * length(n);
+    if (!(area > 0)) continue;
+    b.axis = n / (2 * area);
+    b.spread = 0;
+    b.two_sided = true;
+    b.intensity = area * mean_emission(scene_, mesh, t);
+    emitter_[index][t] = std::uint32_t(triangles_.size());
+    triangles_.push_back({index, t, p[0], p[1], p[2], b.axis, area});
+    bounds.push_back(b);
   }
 }
 
-EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, float pick, Vec2f u) const {
-  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), pick);
-  const std::size_t index = std::min<std::size_t>(std::size_t(found - cumulative_.begin()), triangles_.size() - 1);
-  const Emitter& e = triangles_[index];
+EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, Vec3f normal, double pick, Vec2f u) const {
+  const auto found = tree_.pick(point, normal, pick);
+  if (!found) return {};
+  const Emitter& e = triangles_[found->light];
   const float root = std::sqrt(u.x);
   const float bu = root * (1 - u.y), bv = root * u.y;
   const Vec3f p = (1 - bu - bv) * e.p0 + bu * e.p1 + bv * e.p2;
@@ -147,23 +149,19 @@ EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, float pick, Vec
   const float cosine = std::abs(dot(s.to_light, e.normal));
   if (!(cosine > 1e-7F)) return {};
   s.radiance = surface_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
-  s.pdf = probability_[e.instance][e.triangle] / e.area * d2 / cosine;
+  s.pdf = found->probability / e.area * d2 / cosine;
   return s;
 }
 
-float EmissiveTriangles::pdf(const Hit& hit, Vec3f from, Vec3f hit_position) const {
-  const auto& probabilities = probability_[hit.instance];
-  if (probabilities.empty() || probabilities[hit.triangle] <= 0) return 0;
-  const Instance& instance = scene_.instances[hit.instance];
-  const Mesh& mesh = scene_.meshes[instance.mesh];
-  const Triangle& t = mesh.triangles[hit.triangle];
-  Vec3f p[3];
-  for (int k = 0; k < 3; ++k) p[k] = transform_point(instance.world_from_object, mesh.positions[t[k]]);
-  const float area = 0.5F * length(cross(p[1] - p[0], p[2] - p[0]));
-  const Vec3f d = hit_position - from;
+float EmissiveTriangles::pdf(const Hit& hit, Vec3f point, Vec3f normal, Vec3f hit_position) const {
+  const auto& emitters = emitter_[hit.instance];
+  if (emitters.empty() || emitters[hit.triangle] == kNoEmitter) return 0;
+  const std::uint32_t emitter = emitters[hit.triangle];
+  const Vec3f d = hit_position - point;
   const float d2 = length_squared(d);
   const float cosine = std::abs(dot(d, hit.geometric_normal)) / std::sqrt(d2);
-  return cosine > 1e-7F ? probabilities[hit.triangle] / area * d2 / cosine : 0;
+  if (!(cosine > 1e-7F)) return 0;
+  return tree_.probability(emitter, point, normal) / triangles_[emitter].area * d2 / cosine;
 }
 
 }  // namespace chiaro::renderer

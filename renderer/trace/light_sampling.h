@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/scene/light.h"
+#include "renderer/trace/light_tree.h"
 #include "renderer/trace/ray_tracer.h"
 
 namespace chiaro::renderer {
@@ -16,9 +17,10 @@ struct PunctualSample {
   Vec3f irradiance;    // lux / cd·m⁻² per channel on a plane across to_light: intensity / distance²
 };
 
+// Nothing from an environment, which is no punctual light.
 PunctualSample sample_punctual(const Light& light, Vec3f point);
 
-// Rays that leave point and spot lights, chosen by power. Directional lights send none.
+// Rays that leave point and spot lights, chosen by power. Other lights send none.
 class PunctualEmission {
  public:
   // Keeps a reference to `lights`, which must outlive it.
@@ -36,11 +38,12 @@ class PunctualEmission {
 
  private:
   const Lights& lights_;
-  std::vector<float> power_;  // lumens of the brightest channel
+  std::vector<float> power_;       // lumens of the brightest channel
+  std::vector<double> power_end_;  // cumulative
   float total_power_ = 0;
 };
 
-// The scene's emissive triangles, sampled by power.
+// The scene's emissive triangles, sampled by a light tree. Triangles send light from both of their sides.
 class EmissiveTriangles {
  public:
   explicit EmissiveTriangles(const Scene& scene);
@@ -52,10 +55,10 @@ class EmissiveTriangles {
     Vec3f radiance;  // cd/m²
     float pdf = 0;   // per steradian, at the point
   };
-  // pdf 0: nothing arrives.
-  Sample sample(Vec3f point, float pick, Vec2f u) const;
-  // Density, per steradian at `from`, with which sample() finds this hit.
-  float pdf(const Hit& hit, Vec3f from, Vec3f hit_position) const;
+  // At a surface of this normal, or of any where it is zero. 0 ≤ pick < 1. pdf 0: nothing arrives.
+  Sample sample(Vec3f point, Vec3f normal, double pick, Vec2f u) const;
+  // Density, per steradian, with which sample() finds this hit from a surface point.
+  float pdf(const Hit& hit, Vec3f point, Vec3f normal, Vec3f hit_position) const;
 
  private:
   struct Emitter {
@@ -64,10 +67,12 @@ class EmissiveTriangles {
     Vec3f normal;      // unit
     float area;        // m²
   };
+  void add_instance(std::uint32_t instance, std::vector<LightBounds>& bounds);
+
   const Scene& scene_;
   std::vector<Emitter> triangles_;
-  std::vector<float> cumulative_;                // of the probability, per emitter; the last is 1
-  std::vector<std::vector<float>> probability_;  // per instance and triangle; empty where nothing is emitted
+  std::vector<std::vector<std::uint32_t>> emitter_;  // per instance and triangle; empty where nothing is emitted
+  LightTree tree_;
 };
 
 }  // namespace chiaro::renderer

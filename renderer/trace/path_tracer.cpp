@@ -14,6 +14,9 @@ constexpr float kMostSurvival = 0.95F;
 // light; farther away scattered rays find as much, for less.
 constexpr float kSubpathReach = 0.1F;
 
+// Lights that vertex 0 asks where there are many.
+constexpr int kAsked = 4;
+
 // 0 where both are zero or infinite: a point of no measure.
 float balance_heuristic(float pdf, float other) {
   const float weight = pdf / (pdf + other);
@@ -31,6 +34,12 @@ float scattered_cone(float pdf) {
 const Scene& scene_without_emission() {
   static const Scene empty;
   return empty;
+}
+
+// Finer than floats, so that none of very many lights is out of reach.
+double next_fine(Sampler& sampler) {
+  const double coarse = double(sampler.next_1d());
+  return coarse + double(sampler.next_bits()) * 0x1p-56;
 }
 
 }  // namespace
@@ -72,10 +81,17 @@ struct PathTracer::Vertex {
 PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission)
     : tracer_(tracer),
       lights_(lights),
+      selection_(lights),
       emission_(lights),
       subpath_reach_(kSubpathReach * tracer.bounds().diagonal()),
       emitters_(scene_emission ? tracer.scene() : scene_without_emission()),
-      bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces) {}
+      bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces) {
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (const auto* light = std::get_if<EnvironmentLight>(&lights[i]); light != nullptr && light->intensity > 0) {
+      environments_.push_back({i, EnvironmentSampling(*light)});
+    }
+  }
+}
 
 float PathTracer::visibility(const Vertex& v, Vec3f to_light, float distance, Sampler& sampler) const {
   // A little short of the light, so that an emissive triangle does not hide itself.
@@ -98,45 +114,42 @@ void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Sampler& sa
   }
 }
 
-// One light is picked in proportion to the irradiance it would give if nothing stood between.
-float PathTracer::pick_weight(const Vertex& v, std::size_t light) const {
-  const PunctualSample s = sample_punctual(lights_[light], v.position);
-  return std::max(0.0F, dot(v.pick_normal(), s.to_light)) * max_component(s.irradiance);
+void PathTracer::add_chosen(const Vertex& v, LightSelection::Pick chosen, Vec3f throughput, Sampler& sampler,
+                            PathLight& light) const {
+  const PunctualSample s = sample_punctual(lights_[chosen.light], v.position);
+  const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance / chosen.probability;
+  if (!(max_component(value) > 0) || !is_finite(value)) return;
+  light.add(v.index, chosen.light, visibility(v, s.to_light, s.distance, sampler) * value);
 }
 
-std::size_t PathTracer::pick_light(const Vertex& v, float pick, float& probability) const {
-  std::size_t chosen = lights_.size();
-  float total = 0, chosen_weight = 0;
-  // A reservoir of one: light i replaces the choice with probability weight / total so far, and what is left of `pick`
-  // is stretched to a fresh random number.
-  for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const float weight = pick_weight(v, i);
-    if (!(weight > 0)) continue;
-    total += weight;
-    const float replace = weight / total;
-    if (pick < replace) {
-      chosen = i;
-      chosen_weight = weight;
-      pick /= replace;
-    } else {
-      pick = (pick - replace) / (1 - replace);
+void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  const double u = next_fine(sampler);
+  if (!selection_.weighs_all()) {
+    for (int k = 0; k < kAsked; ++k) {
+      const LightSelection::Pick pick = selection_.pick(v.position, v.pick_normal(), (k + u) / kAsked);
+      if (pick.probability > 0) add_chosen(v, {pick.light, kAsked * pick.probability}, throughput, sampler, light);
     }
+    return;
   }
-  probability = chosen_weight / total;
-  return chosen;
-}
-
-float PathTracer::pick_probability(const Vertex& v, std::size_t light) const {
-  float total = 0;
-  for (std::size_t i = 0; i < lights_.size(); ++i) total += pick_weight(v, i);
-  return total > 0 ? pick_weight(v, light) / total : 0;
+  LightSelection::Weights weights;
+  const Bsdf::Sketch surface = v.bsdf != nullptr ? v.bsdf->sketch() : Bsdf::Sketch{};
+  const double total = selection_.weigh(v.position, v.pick_normal(), v.to_viewer, surface, weights);
+  double sum = 0;
+  for (int i = 0, asked = 0; i < int(selection_.order().size()) && asked < kAsked; ++i) {
+    const double weight = double(weights[std::size_t(i)]);
+    sum += weight;
+    int times = 0;
+    for (; asked < kAsked && (asked + u) * total < sum * kAsked; ++asked) ++times;
+    if (times == 0) continue;
+    const float expected_times = float(kAsked * weight / total);
+    add_chosen(v, {selection_.order()[std::size_t(i)], expected_times / float(times)}, throughput, sampler, light);
+  }
 }
 
 // Beyond vertex 0, where one light is enough. Weighted against a ray from that light having ended here.
 void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  float probability = 0;
-  const std::size_t i = pick_light(v, sampler.next_1d(), probability);
-  if (i == lights_.size()) return;
+  const auto [i, probability] = selection_.pick(v.position, v.pick_normal(), next_fine(sampler));
+  if (!(probability > 0)) return;
   const PunctualSample s = sample_punctual(lights_[i], v.position);
   const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance / probability;
   if (!is_finite(value)) return;  // closer to the light than floats can tell
@@ -175,7 +188,8 @@ void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& s
   // Densities of y, per m², by this ray and by scattering at v followed by picking the same light.
   const float d2 = hit->distance * hit->distance;
   const float subpath_pdf = emission_.pdf(from.light, from.direction) * cosine_light / d2;
-  const float scatter_pdf = v.pdf(to_end) * cosine_vertex / r2 * pick_probability(y, from.light);
+  const float scatter_pdf =
+      v.pdf(to_end) * cosine_vertex / r2 * selection_.probability(from.light, y.position, y.pick_normal());
   const float weight = balance_heuristic(subpath_pdf, scatter_pdf);
   const Vec3f value = (weight * cosine_vertex / (r2 * d2 * subpath_pdf)) * scattered * reflected;
   if (!(max_component(value) > 0) || !is_finite(value)) return;
@@ -184,8 +198,8 @@ void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& s
 }
 
 void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const float pick = sampler.next_1d();
-  const EmissiveTriangles::Sample s = emitters_.sample(v.position, pick, sampler.next_2d());
+  const double pick = next_fine(sampler);
+  const EmissiveTriangles::Sample s = emitters_.sample(v.position, v.pick_normal(), pick, sampler.next_2d());
   if (!(s.pdf > 0)) return;
   const Vec3f value = throughput * v.eval(s.to_light) * s.radiance / s.pdf;
   if (!(max_component(value) > 0)) return;
@@ -193,44 +207,77 @@ void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sample
   light.add(v.index, emission_source(), (weight * visibility(v, s.to_light, s.distance, sampler)) * value);
 }
 
+void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  for (const Environment& environment : environments_) {
+    const EnvironmentSampling::Sample s = environment.sampling.sample(sampler.next_2d());
+    if (!(s.pdf > 0)) continue;
+    const Vec3f value = throughput * v.eval(s.direction) * s.radiance / s.pdf;
+    if (!(max_component(value) > 0)) continue;
+    const float weight = balance_heuristic(s.pdf, v.pdf(s.direction));
+    light.add(v.index, environment.source, (weight * visibility(v, s.direction, kInfinity, sampler)) * value);
+  }
+}
+
+// What a scattered ray finds that meets nothing.
+void PathTracer::add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const {
+  for (const Environment& environment : environments_) {
+    const float weight = balance_heuristic(ray.pdf, environment.sampling.pdf(ray.direction));
+    light.add(index - 1, environment.source, weight * throughput * environment.sampling.radiance(ray.direction));
+  }
+}
+
+void PathTracer::add_background(Vec3f direction, PathLight& light) const {
+  for (const Environment& environment : environments_) {
+    light.add(0, environment.source, environment.sampling.radiance(direction));
+  }
+}
+
+void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+  if (lights_.empty()) return;
+  if (v.index > 0) {
+    add_one_punctual(v, throughput, sampler, light);
+  } else if (selection_.few()) {
+    add_all_punctual(v, throughput, sampler, light);
+  } else {
+    add_some_punctual(v, throughput, sampler, light);
+  }
+}
+
 // The light of one vertex, but for what scattered rays bring.
 void PathTracer::add_lights(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  if (!lights_.empty()) {
-    if (v.index == 0) {
-      add_all_punctual(v, throughput, sampler, light);
-    } else {
-      add_one_punctual(v, throughput, sampler, light);
-    }
-  }
+  add_punctual(v, throughput, sampler, light);
   add_indirect_samples(v, throughput, sampler, light);
 }
 
 void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
   if (!emission_.empty() && v.index < bounces_) add_light_subpath(v, throughput, sampler, light);
   if (!emitters_.empty()) add_emissive(v, throughput, sampler, light);
+  add_environments(v, throughput, sampler, light);
 }
 
-void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
-                       PathLight& light) const {
+void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const {
   for (;; ++index) {
-    const Ray ray{origin, direction, 0, kInfinity, sampler.next_bits(), 0, scattered_cone(pdf)};
+    const Ray ray{
+        scattered.origin, scattered.direction, 0, kInfinity, sampler.next_bits(), 0, scattered_cone(scattered.pdf)};
     const auto hit = tracer_.intersect(ray);
-    if (!hit) return;
+    if (!hit) return add_missed(scattered, index, throughput, light);
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
     if (!emitters_.empty() && max_component(point.emission) > 0) {
-      const float weight = balance_heuristic(pdf, emitters_.pdf(*hit, origin, point.position));
+      const float light_pdf = emitters_.pdf(*hit, scattered.position, scattered.normal, point.position);
+      const float weight = balance_heuristic(scattered.pdf, light_pdf);
       light.add(index - 1, emission_source(), weight * throughput * point.emission);
     }
     if (index > bounces_) return;
     const Bsdf bsdf(point);
-    const float cosine = dot(point.geometric_normal, -direction);
-    const float area_pdf = pdf * cosine / (hit->distance * hit->distance);
-    const Vertex vertex{point.position, point.geometric_normal, point.rounding, -direction, &bsdf, index, area_pdf,
+    const Vec3f to_viewer = -scattered.direction;
+    const float cosine = dot(point.geometric_normal, to_viewer);
+    const float area_pdf = scattered.pdf * cosine / (hit->distance * hit->distance);
+    const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, area_pdf,
                         point.lift,     point.geometric_normal};
     add_lights(vertex, throughput, sampler, light);
-    if (index == bounces_ && emitters_.empty()) return;
+    if (index == bounces_ && !has_emission()) return;
     const Vec2f u = sampler.next_2d();
-    const auto next = bsdf.sample(-direction, u, sampler.next_1d());
+    const auto next = bsdf.sample(to_viewer, u, sampler.next_1d());
     if (!next) return;
     throughput *= next->weight;
     if (index + 1 >= kRouletteVertex) {
@@ -238,9 +285,7 @@ void PathTracer::trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3
       if (!(sampler.next_1d() < survival)) return;
       throughput *= 1 / survival;
     }
-    origin = vertex.ray_origin();
-    direction = next->direction;
-    pdf = next->pdf;
+    scattered = {vertex.ray_origin(), next->direction, next->pdf, vertex.position, vertex.pick_normal()};
   }
 }
 
@@ -250,11 +295,12 @@ void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int i
   const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, 0,
                       point.lift,     point.geometric_normal};
   add_lights(vertex, throughput, sampler, light);
-  if (index == bounces_ && emitters_.empty()) return;
+  if (index == bounces_ && !has_emission()) return;
   const Vec2f u = sampler.next_2d();
   const auto next = bsdf.sample(to_viewer, u, sampler.next_1d());
   if (!next) return;
-  trace(vertex.ray_origin(), next->direction, next->pdf, index + 1, throughput * next->weight, sampler, light);
+  trace({vertex.ray_origin(), next->direction, next->pdf, vertex.position, vertex.pick_normal()}, index + 1,
+        throughput * next->weight, sampler, light);
 }
 
 void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const {
@@ -263,8 +309,9 @@ void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler
 
 void PathTracer::add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler,
                                   PathLight& light) const {
-  if (with_punctual) add_punctual_illumination(position, normal, sampler, light);
-  add_indirect_illumination({position, normal, 0, normal, nullptr, 0}, sampler, light);
+  const Vertex vertex{position, normal, 0, normal, nullptr, 0};
+  if (with_punctual) add_punctual(vertex, {1, 1, 1}, sampler, light);
+  add_indirect_illumination(vertex, sampler, light);
 }
 
 void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const {
@@ -273,17 +320,18 @@ void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, P
   const Vec3f normal = point.shading_normal;
   const float rounding = point.rounding / std::max(kLeastCosine, dot(normal, point.geometric_normal));
   const Vertex vertex{point.position, normal, rounding, normal, nullptr, 0, 0, point.lift, point.geometric_normal};
-  add_all_punctual(vertex, {1, 1, 1}, sampler, light);
+  add_punctual(vertex, {1, 1, 1}, sampler, light);
   add_indirect_illumination(vertex, sampler, light);
 }
 
 void PathTracer::add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const {
   add_indirect_samples(vertex, {1, 1, 1}, sampler, light);
-  if (bounces_ == 0 && emitters_.empty()) return;
+  if (bounces_ == 0 && !has_emission()) return;
   const Vec3f local = sample_cosine_hemisphere(sampler.next_2d());
   if (!(local.z > 0)) return;
+  const Vec3f direction = normalize(Frame3f(vertex.normal).world_from_local(local));
   // Illumination is the mean of incident radiance over cosine-weighted directions.
-  trace(vertex.ray_origin(), normalize(Frame3f(vertex.normal).world_from_local(local)), local.z * kInvPi, 1, {1, 1, 1},
+  trace({vertex.ray_origin(), direction, local.z * kInvPi, vertex.position, vertex.pick_normal()}, 1, {1, 1, 1},
         sampler, light);
 }
 

@@ -1,18 +1,22 @@
 #pragma once
 // The light transport estimator that frames and illumination share: path tracing from the eye or the receiver with
 // next-event estimation, Russian roulette, and multiple importance sampling where it matters:
-// - emissive surfaces are found by light samples and by scattered rays;
+// - emissive surfaces and environments are found by light samples and by scattered rays;
 // - the bright spot that a point light makes on a surface close to it, which scattered rays rarely meet, is found by a
-// ray
-//   from the light too, whose end every vertex of the path is connected with (bidirectional path tracing with light
+//   ray from the light too, whose end every vertex of the path is connected with (bidirectional path tracing with light
 //   subpaths of two vertices).
+// Of a few punctual lights, vertex 0 asks all, and later vertices one. Of more, vertex 0 asks some, spread evenly over
+// what each would bring if nothing stood between, and later vertices one.
+//
 // Source: Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997 (balance heuristic: eq. 9.8; ch. 10).
 
 #include <vector>
 
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
+#include "renderer/trace/environment_sampling.h"
 #include "renderer/trace/light_sampling.h"
+#include "renderer/trace/light_selection.h"
 
 namespace chiaro::renderer {
 
@@ -20,7 +24,7 @@ namespace chiaro::renderer {
 struct PathLight {
   Vec3f direct;    // from an emitter to vertex 0
   Vec3f indirect;  // through one further surface or more
-  // Per punctual light, and the emissive surfaces last; empty: not asked for. direct + indirect = their sum.
+  // Per light, and the emissive surfaces last; empty: not asked for. direct + indirect = their sum.
   std::vector<Vec3f> per_light;
   // Brighter contributions are scaled down until their largest channel is this, cd/m².
   float clamp_direct = kInfinity, clamp_indirect = kInfinity;
@@ -43,38 +47,57 @@ class PathTracer {
   void add_scattered(const SurfacePoint& vertex, Vec3f to_viewer, int index, Vec3f throughput, Sampler& sampler,
                      PathLight& light) const;
 
+  // What a ray of the camera that meets nothing sees: environments.
+  void add_background(Vec3f direction, PathLight& light) const;
+
   // Illumination (irradiance / π) of a surface point by one path. `with_punctual`: its direct light from punctual
-  // lights too, which needs no more than one sample where no surface is alpha-blended.
+  // lights too.
   void add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler, PathLight& light) const;
   // The same of a point that a ray has met, by its shading normal, with punctual lights.
   void add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const;
+  // Direct light from each punctual light, which needs no more than one sample where no surface is alpha-blended.
   void add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const;
 
-  bool has_emission() const { return !emitters_.empty(); }
+  // Whether direct light comes from more than punctual lights, so that scattered rays find it too.
+  bool has_emission() const { return !emitters_.empty() || !environments_.empty(); }
   std::size_t emission_source() const { return lights_.size(); }
   const RayTracer& tracer() const { return tracer_; }
 
  private:
   struct Vertex;
+  struct Environment {
+    std::size_t source;
+    EnvironmentSampling sampling;
+  };
+  // A ray that leaves a vertex.
+  struct ScatteredRay {
+    Vec3f origin, direction;
+    float pdf;               // of the direction, per steradian
+    Vec3f position, normal;  // of the vertex, as lights are picked for it
+  };
   void add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const;
-  void trace(Vec3f origin, Vec3f direction, float pdf, int index, Vec3f throughput, Sampler& sampler,
-             PathLight& light) const;
+  void trace(ScatteredRay ray, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_lights(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_indirect_samples(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_all_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_some_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_chosen(const Vertex& vertex, LightSelection::Pick chosen, Vec3f throughput, Sampler& sampler,
+                  PathLight& light) const;
   void add_one_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_light_subpath(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  std::size_t pick_light(const Vertex& vertex, float pick, float& probability) const;
-  float pick_weight(const Vertex& vertex, std::size_t light) const;
-  float pick_probability(const Vertex& vertex, std::size_t light) const;
   void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_environments(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const;
   float visibility(const Vertex& vertex, Vec3f to_light, float distance, Sampler& sampler) const;
 
   const RayTracer& tracer_;
   const Lights& lights_;
+  LightSelection selection_;
   PunctualEmission emission_;
   float subpath_reach_;  // metres
   EmissiveTriangles emitters_;
+  std::vector<Environment> environments_;
   int bounces_;
 };
 

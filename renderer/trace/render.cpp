@@ -58,7 +58,11 @@ void sample_pixel(const FrameTask& task, const SampleKey& key, const Film& film,
   Sampler sampler = make_sampler(task.options, key);
   const Ray ray = camera_ray(task, key, sampler);
   const auto hit = task.tracer.intersect(ray);
-  if (!hit) return;
+  if (!hit) {
+    task.paths.add_background(normalize(ray.direction), sample.light);
+    sample.beauty = sample.light.direct;
+    return;
+  }
   const Scene& scene = task.tracer.scene();
   const SurfacePoint point = make_surface_point(scene, ray, *hit);
   sample.hit = true;

@@ -11,6 +11,9 @@ namespace {
 // although the samples within a batch are stratified.
 constexpr int kBatches = 4;
 
+// Each punctual light is asked once per point, and not one per path, where they are no more than so many per path.
+constexpr std::size_t kLightsPerPath = 4;
+
 struct Estimate {
   Vec3f value, standard_error;
 };
@@ -25,12 +28,12 @@ Vec3f batch_mean(const PathTracer& paths, const SurfaceSample& at, bool with_pun
   return (light.direct + light.indirect) / float(samples);
 }
 
-Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceOptions& options, bool blended,
+Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceOptions& options, bool with_punctual,
                   std::uint32_t stream) {
   PathLight punctual;
   Sampler sampler(options.seed, stream, 0);
-  if (!blended) paths.add_punctual_illumination(at.position, at.normal, sampler, punctual);
-  const bool noisy = options.bounces != 0 || blended || paths.has_emission();
+  if (!with_punctual) paths.add_punctual_illumination(at.position, at.normal, sampler, punctual);
+  const bool noisy = options.bounces != 0 || with_punctual || paths.has_emission();
   if (!noisy) return {punctual.direct, {}};
 
   const int batches = std::min(kBatches, options.samples);
@@ -39,7 +42,7 @@ Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceO
   for (int b = 0; b < batches; ++b) {
     const int count = options.samples / batches + (b < options.samples % batches ? 1 : 0);
     const std::uint64_t seed = options.seed * 0x9e3779b97f4a7c15ULL + std::uint64_t(b) + 1;
-    means[b] = batch_mean(paths, at, blended, seed, stream, count);
+    means[b] = batch_mean(paths, at, with_punctual, seed, stream, count);
     mean += means[b] / float(batches);
   }
   Vec3f variance;
@@ -53,14 +56,16 @@ Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceO
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control) {
   const PathTracer paths(tracer, lights, options.bounces, options.scene_emission);
-  const bool blended = has_blended_surfaces(tracer.scene());
+  const bool with_punctual =
+      has_blended_surfaces(tracer.scene()) ||
+      lights.size() > std::max(LightSelection::kFew, kLightsPerPath * std::size_t(options.samples));
   Illumination result;
   result.value.resize(points.size());
   result.standard_error.resize(points.size());
   constexpr std::size_t kBlock = 64;
   parallel_for((points.size() + kBlock - 1) / kBlock, "illumination", control, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i) {
-      const Estimate e = estimate(paths, points[i], options, blended, std::uint32_t(i));
+      const Estimate e = estimate(paths, points[i], options, with_punctual, std::uint32_t(i));
       result.value[i] = e.value;
       result.standard_error[i] = e.standard_error;
     }

@@ -7,23 +7,16 @@
 #include "renderer/core/sampler.h"
 #include "tests/support/code_scenes.h"
 #include "tests/support/directions.h"
+#include "tests/support/mean.h"
 
 namespace chiaro::renderer {
 namespace {
 
 using test::add_mesh;
 using test::lambert;
+using test::Mean;
 using test::rectangle;
 using test::uniform_direction;
-
-// Mean and its standard error, as if samples were independent.
-struct Mean {
-  double sum = 0, squares = 0;
-  int count = 0;
-  void add(double v) { sum += v, squares += v * v, ++count; }
-  double value() const { return sum / count; }
-  double error() const { return std::sqrt(std::max(0.0, squares / count - value() * value()) / count); }
-};
 
 void expect_near(const Mean& mean, double expected) { EXPECT_NEAR(mean.value(), expected, 5 * mean.error() + 1e-4); }
 
@@ -59,7 +52,7 @@ TEST(EmissiveTriangles, DensityIntegratesToOneOverAllDirections) {
       const Vec3f direction = uniform_direction(Sampler(1, 0, k).next_2d());
       double pdf = 0;
       for (const Hit& hit : all_hits(tracer, from, direction)) {
-        pdf += double(emitters.pdf(hit, from, from + hit.distance * direction));
+        pdf += double(emitters.pdf(hit, from, {}, from + hit.distance * direction));
       }
       mean.add(4 * M_PI * pdf);
     }
@@ -76,13 +69,13 @@ TEST(EmissiveTriangles, SamplesCarryTheirOwnDensityAndRadiance) {
   for (std::uint32_t k = 0; k < 1U << 15; ++k) {
     Sampler sampler(2, 0, k);
     const float pick = sampler.next_1d();
-    const EmissiveTriangles::Sample s = emitters.sample(from, pick, sampler.next_2d());
+    const EmissiveTriangles::Sample s = emitters.sample(from, {}, pick, sampler.next_2d());
     if (!(s.pdf > 0)) continue;
     EXPECT_NEAR(length(s.to_light), 1, 1e-5F);
     // What stands at the sampled distance is what was sampled.
     const auto hit = tracer.intersect({from, s.to_light, s.distance * 0.999F, s.distance * 1.001F, 0});
     ASSERT_TRUE(hit) << k;
-    EXPECT_NEAR(emitters.pdf(*hit, from, from + hit->distance * s.to_light) / s.pdf, 1, 5e-3F);
+    EXPECT_NEAR(emitters.pdf(*hit, from, {}, from + hit->distance * s.to_light) / s.pdf, 1, 5e-3F);
     EXPECT_EQ(s.radiance, hit->instance == 0 ? Vec3f({1, 2, 3}) : Vec3f({50, 50, 50}));
     if (hit->instance == 0) solid_angle.add(1 / double(s.pdf));
     if (hit->instance == 1) solid_angle.add(0);
@@ -92,24 +85,43 @@ TEST(EmissiveTriangles, SamplesCarryTheirOwnDensityAndRadiance) {
 }
 
 TEST(EmissiveTriangles, PicksByPowerAndSkipsTheDark) {
-  // Two equal squares of luminance 1 : 3, and a dark one.
+  // Two equal squares of luminance 1 : 3 at the same distance, and a dark one.
   Scene scene;
-  add_mesh(scene, rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), lambert({0, 0, 0}, {1, 1, 1}), "dim");
-  add_mesh(scene, rectangle({5, 0, 0}, {1, 0, 0}, {0, 1, 0}), lambert({0, 0, 0}, {3, 3, 3}), "bright");
+  add_mesh(scene, rectangle({-3, 0, 0}, {1, 0, 0}, {0, 1, 0}), lambert({0, 0, 0}, {1, 1, 1}), "dim");
+  add_mesh(scene, rectangle({2, 0, 0}, {1, 0, 0}, {0, 1, 0}), lambert({0, 0, 0}, {3, 3, 3}), "bright");
   add_mesh(scene, rectangle({0, 5, 0}, {1, 0, 0}, {0, 1, 0}), lambert({1, 1, 1}), "dark");
   const EmissiveTriangles emitters(scene);
   int bright = 0;
   constexpr int kSamples = 4096;
   for (std::uint32_t k = 0; k < kSamples; ++k) {
     Sampler sampler(3, 0, k);
-    const float pick = sampler.next_1d();
-    const auto s = emitters.sample({2, 0.5F, 4}, pick, sampler.next_2d());
+    const double pick = double(sampler.next_1d());
+    const auto s = emitters.sample({0, 0.5F, 4}, {}, pick, sampler.next_2d());
     ASSERT_GT(s.radiance.x, 0);
     bright += s.radiance.x == 3 ? 1 : 0;
   }
   EXPECT_NEAR(double(bright) / kSamples, 0.75, 0.01);
   EXPECT_TRUE(EmissiveTriangles(test::corner_with_ball()).empty());
   EXPECT_FALSE(emitters.empty());
+}
+
+TEST(EmissiveTriangles, PicksTheNearAndWhatTheSurfaceFaces) {
+  Scene scene;
+  add_mesh(scene, rectangle({-0.5F, 1, -0.5F}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {1, 1, 1}), "near");
+  add_mesh(scene, rectangle({-0.5F, 100, -0.5F}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {1, 1, 1}), "far");
+  add_mesh(scene, rectangle({-0.5F, -1, -0.5F}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {1, 1, 1}), "behind");
+  const EmissiveTriangles emitters(scene);
+  int near = 0;
+  constexpr int kSamples = 1024;
+  for (std::uint32_t k = 0; k < kSamples; ++k) {
+    Sampler sampler(3, 0, k);
+    const double pick = double(sampler.next_1d());
+    const auto s = emitters.sample({0, 0, 0}, {0, 1, 0}, pick, sampler.next_2d());
+    if (!(s.pdf > 0)) continue;
+    EXPECT_GT(s.to_light.y, 0);
+    near += s.distance < 2 ? 1 : 0;
+  }
+  EXPECT_GT(near, 0.9 * kSamples);
 }
 
 Lights punctual_lights() {

@@ -1,0 +1,54 @@
+#include "cli/environment_options.h"
+
+#include <algorithm>
+
+#include "cli/add_options.h"
+#include "renderer/core/error.h"
+#include "renderer/io/environment_file.h"
+
+namespace chiaro::cli {
+namespace {
+
+constexpr float kRadiansPerDegree = renderer::kPi / 180;
+
+void apply(const EnvironmentOptions& options, renderer::Lights& lights) {
+  bool found = false;
+  for (renderer::Light& light : lights) {
+    auto* environment = std::get_if<renderer::EnvironmentLight>(&light);
+    if (environment == nullptr) continue;
+    found = true;
+    if (options.rotation) environment->rotation = *options.rotation * kRadiansPerDegree;
+    if (options.intensity) environment->intensity = *options.intensity;
+  }
+  if (!found && (options.rotation || options.intensity)) {
+    throw renderer::Error({"", options.rotation ? "option --environment-rotation" : "option --environment-intensity",
+                           "there is no environment", "--environment, or a scene or light file with one"});
+  }
+}
+
+}  // namespace
+
+void add_environment_options(CLI::App& command, EnvironmentOptions& options) {
+  add_text(command,
+           {"--environment", "IMAGE",
+            "Light from all around (.exr, .hdr …; latitude-longitude, top +Y, middle +X, a quarter from the left -Z)"},
+           options.image);
+  add_number(
+      command,
+      {"--environment-rotation", "DEGREES", "About +Y, to the left as seen from within: 90 turns -Z to -X (default 0)"},
+      options.rotation, {-360, 360});
+  add_number(command, {"--environment-intensity", "FACTOR", "cd/m² of a pixel of 1 (default 1)"}, options.intensity,
+             {0, 1e15});
+}
+
+renderer::Lights with_environment(renderer::Lights lights, const EnvironmentOptions& options,
+                                  std::vector<std::string>& warnings) {
+  if (!options.image.empty()) {
+    std::erase_if(lights, renderer::is_environment);
+    lights.emplace_back(renderer::load_environment(options.image, warnings));
+  }
+  apply(options, lights);
+  return lights;
+}
+
+}  // namespace chiaro::cli

@@ -1,0 +1,20 @@
+#pragma once
+// Colours of an image file as scene-linear Rec.709.
+
+#include <string>
+#include <vector>
+
+#include "renderer/core/vec.h"
+#include "renderer/image/image_file.h"
+
+namespace chiaro::renderer {
+
+// The pixels of the channels R, G and B, or of the one grey channel, rows from the top. Values on the sRGB curve are
+// made linear; primaries are those of the attribute `chromaticities`, else Rec.709's. Error, naming `file`, where there
+// are no such channels or no such primaries.
+std::vector<Vec3f> scene_linear_rec709(const ImageFile& image, const std::string& file);
+
+// IEC 61966-2-1.
+float linear_from_srgb(float value);
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,185 @@
+#include "renderer/trace/light_selection.h"
+
+#include <algorithm>
+
+#include "renderer/trace/light_sampling.h"
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr double kBelowOne = 1 - 1e-12;
+
+LightBounds bounds_of(const PointLight& light) {
+  LightBounds bounds;
+  bounds.box.extend(light.position);
+  bounds.intensity = max_component(light.intensity);
+  return bounds;
+}
+
+LightBounds bounds_of(const SpotLight& light) {
+  LightBounds bounds;
+  bounds.box.extend(light.position);
+  bounds.axis = light.direction;
+  bounds.spread = light.inner_cone_angle;
+  // A little wider: the tree must not leave out by rounding what sample_punctual lets through.
+  bounds.emission = std::max(0.0F, light.outer_cone_angle - light.inner_cone_angle) + 1e-3F;
+  bounds.intensity = max_component(light.intensity);
+  return bounds;
+}
+
+// Of no intensity, so that they are not in the tree.
+LightBounds bounds_of(const DirectionalLight&) { return {}; }
+LightBounds bounds_of(const EnvironmentLight&) { return {}; }
+
+std::vector<LightBounds> bounds_of(const Lights& lights) {
+  std::vector<LightBounds> bounds;
+  for (const Light& light : lights) {
+    bounds.push_back(std::visit([](const auto& l) { return bounds_of(l); }, light));
+  }
+  return bounds;
+}
+
+}  // namespace
+
+LightSelection::LightSelection(const Lights& lights) : lights_(lights), place_(lights.size(), 0) {
+  LightTree tree(bounds_of(lights));
+  for (const std::uint32_t light : tree.lights_in_order()) order_.push_back(light);
+  placed_ = order_.size();
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (std::holds_alternative<DirectionalLight>(lights[i])) order_.push_back(i);
+  }
+  for (std::size_t k = 0; k < order_.size(); ++k) place_[order_[k]] = k;
+  if (order_.size() > kWeighed) {
+    tree_ = std::move(tree);
+    return;
+  }
+  lanes_.resize((placed_ + kLanes - 1) / kLanes);
+  for (std::size_t k = 0; k < lanes_.size() * kLanes; ++k) {
+    const Light nothing = PointLight{};
+    set_lane(k < placed_ ? lights[order_[k]] : nothing, k % kLanes, lanes_[k / kLanes]);
+  }
+}
+
+void LightSelection::set_lane(const Light& light, std::size_t lane, Lanes& lanes) {
+  const auto* spot = std::get_if<SpotLight>(&light);
+  const auto* point = std::get_if<PointLight>(&light);
+  const Vec3f at = spot != nullptr ? spot->position : point->position;
+  const Vec3f axis = spot != nullptr ? spot->direction : Vec3f{};
+  const float outer = spot != nullptr ? std::cos(spot->outer_cone_angle) : -1.0F;
+  const float inner = spot != nullptr ? std::cos(spot->inner_cone_angle) : 0.0F;
+  lanes.x[lane] = at.x, lanes.y[lane] = at.y, lanes.z[lane] = at.z;
+  lanes.axis_x[lane] = axis.x, lanes.axis_y[lane] = axis.y, lanes.axis_z[lane] = axis.z;
+  lanes.cos_outer[lane] = outer;
+  lanes.fall[lane] = 1 / std::max(1e-3F, inner - outer);
+  lanes.intensity[lane] = max_component(spot != nullptr ? spot->intensity : point->intensity);
+}
+
+// Irradiance as sample_punctual has it, times response(direction to the light, its cosine).
+template <class Response>
+double LightSelection::weigh_by(Vec3f p, Vec3f n, const Response& response, Weights& weights) const {
+  constexpr float kLargest = 1e30F;
+  for (std::size_t group = 0; group < lanes_.size(); ++group) {
+    const Lanes& l = lanes_[group];
+    float* out = &weights[group * kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const Vec3f d{l.x[k] - p.x, l.y[k] - p.y, l.z[k] - p.z};
+      const float scale = 1 / std::sqrt(std::max(dot(d, d), 1e-30F));
+      const float cosine = std::max(0.0F, scale * dot(n, d));
+      const float from_axis = -scale * (l.axis_x[k] * d.x + l.axis_y[k] * d.y + l.axis_z[k] * d.z);
+      const float fall = std::min(1.0F, std::max(0.0F, (from_axis - l.cos_outer[k]) * l.fall[k]));
+      const float irradiance = l.intensity[k] * cosine * (scale * scale) * (fall * fall);
+      out[k] = std::min(irradiance * response(scale * d, cosine), kLargest);
+    }
+  }
+  for (std::size_t k = placed_; k < order_.size(); ++k) {
+    const Vec3f to_light = sample_punctual(lights_[order_[k]], p).to_light;
+    weights[k] = distant_weight(order_[k], n) * response(to_light, std::max(0.0F, dot(n, to_light)));
+  }
+  double total = 0;
+  for (std::size_t k = 0; k < order_.size(); ++k) total += double(weights[k]);
+  return total;
+}
+
+double LightSelection::weigh(Vec3f point, Vec3f normal, Weights& weights) const {
+  return weigh_by(
+      point, normal, [](Vec3f, float) { return 1.0F; }, weights);
+}
+
+// Lambert, and GGX with Schlick's Fresnel and without most of its shadowing.
+double LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface,
+                             Weights& weights) const {
+  constexpr float kLeastDiffuse = 0.02F, kLeastCosine = 0.1F;
+  if (surface.specular <= 0) return weigh(point, normal, weights);
+  const float diffuse = std::max(surface.diffuse, kLeastDiffuse) * kInvPi;
+  const float a2 = surface.alpha * surface.alpha, f0 = surface.specular;
+  const float cosine_viewer = std::max(dot(normal, to_viewer), kLeastCosine);
+  const auto response = [&](Vec3f to_light, float cosine) {
+    const Vec3f sum = to_viewer + to_light;
+    const float scale = 1 / std::sqrt(std::max(dot(sum, sum), 1e-12F));
+    const float n_h = std::min(scale * dot(normal, sum), 1.0F), v_h = std::min(scale * dot(to_viewer, sum), 1.0F);
+    const float t = n_h * n_h * (a2 - 1) + 1, distribution = a2 * kInvPi / std::max(t * t, 1e-20F);
+    const float away = 1 - v_h, fresnel = f0 + (1 - f0) * (away * away) * (away * away) * away;
+    return diffuse + 0.25F * distribution * fresnel / (cosine_viewer * std::max(cosine, kLeastCosine));
+  };
+  return weigh_by(point, normal, response, weights);
+}
+
+float LightSelection::distant_weight(std::size_t light, Vec3f normal) const {
+  const PunctualSample s = sample_punctual(lights_[light], {});
+  return std::max(0.0F, dot(normal, s.to_light)) * max_component(s.irradiance);
+}
+
+LightSelection::Pick LightSelection::pick(Vec3f point, Vec3f normal, double u) const {
+  if (!weighs_all()) return pick_from_tree(point, normal, u);
+  Weights weights;
+  const double total = weigh(point, normal, weights), at = u * total;
+  double sum = 0;
+  Pick last;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    if (!(weights[k] > 0)) continue;
+    sum += double(weights[k]);
+    last = {order_[k], float(double(weights[k]) / total)};
+    if (at < sum) break;
+  }
+  return last;
+}
+
+// The tree, then the lights at infinity.
+LightSelection::Pick LightSelection::pick_from_tree(Vec3f point, Vec3f normal, double u) const {
+  const double tree_weight = double(tree_.importance(point, normal));
+  double total = tree_weight;
+  for (std::size_t k = placed_; k < order_.size(); ++k) total += double(distant_weight(order_[k], normal));
+  if (!(total > 0)) return {};
+  double at = u * total;
+  if (at < tree_weight) {
+    const auto found = tree_.pick(point, normal, std::min(at / tree_weight, kBelowOne));
+    return found ? Pick{found->light, float(tree_weight / total * double(found->probability))} : Pick{};
+  }
+  at -= tree_weight;
+  Pick last;
+  for (std::size_t k = placed_; k < order_.size() && at >= 0; ++k) {
+    const double w = double(distant_weight(order_[k], normal));
+    if (!(w > 0)) continue;
+    last = {order_[k], float(w / total)};
+    at -= w;
+  }
+  return last;
+}
+
+float LightSelection::probability(std::size_t light, Vec3f point, Vec3f normal) const {
+  double total = 0, own = 0;
+  if (weighs_all()) {
+    Weights weights;
+    total = weigh(point, normal, weights);
+    own = order_.empty() ? 0 : double(weights[place_[light]]);
+  } else {
+    const double tree_weight = double(tree_.importance(point, normal));
+    total = tree_weight;
+    for (std::size_t k = placed_; k < order_.size(); ++k) total += double(distant_weight(order_[k], normal));
+    own = place_[light] >= placed_ ? double(distant_weight(light, normal))
+                                   : tree_weight * double(tree_.probability(std::uint32_t(light), point, normal));
+  }
+  return total > 0 ? float(own / total) : 0;
+}
+
+}  // namespace chiaro::renderer

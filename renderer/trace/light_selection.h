@@ -1,0 +1,68 @@
+#pragma once
+// Which punctual light to ask at a surface point, where not all are asked.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "renderer/scene/light.h"
+#include "renderer/trace/bsdf.h"
+#include "renderer/trace/light_tree.h"
+
+namespace chiaro::renderer {
+
+// In proportion to the irradiance that a light would give if nothing stood between: exactly that among up to some
+// hundred lights, as a light tree bounds it among more. Environments are left to EnvironmentSampling.
+class LightSelection {
+ public:
+  // Up to so many lights all are asked where a surface is seen directly.
+  static constexpr std::size_t kFew = 8;
+  // Up to so many lights all are weighed. (Weighing four takes about as long as one step down the tree.)
+  static constexpr std::size_t kWeighed = 256;
+
+  // Keeps a reference to `lights`, which must outlive it.
+  explicit LightSelection(const Lights& lights);
+  bool few() const { return order_.size() <= kFew; }
+  bool weighs_all() const { return tree_.empty(); }
+
+  struct Pick {
+    std::size_t light = 0;
+    float probability = 0;  // 0: none brings anything
+  };
+  // 0 ≤ u < 1. Neighbours in u are neighbours in space, so that stratified ones spread over the scene.
+  Pick pick(Vec3f point, Vec3f normal, double u) const;
+  // With which pick() gives the light.
+  float probability(std::size_t light, Vec3f point, Vec3f normal) const;
+
+  // Where all are weighed: the lights, and the irradiance of each from the side of `normal`, lux of the brightest
+  // channel, in that order. Returns their sum.
+  std::span<const std::size_t> order() const { return order_; }
+  using Weights = std::array<float, kWeighed>;
+  double weigh(Vec3f point, Vec3f normal, Weights& weights) const;
+  // The same times about what the surface would send of it to the viewer; above zero wherever the irradiance is.
+  double weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface, Weights& weights) const;
+
+ private:
+  // Lights side by side, so that four are weighed at once. Those at infinity come last, by themselves.
+  static constexpr std::size_t kLanes = 4;
+  struct Lanes {
+    float x[kLanes], y[kLanes], z[kLanes], intensity[kLanes];
+    float axis_x[kLanes], axis_y[kLanes], axis_z[kLanes];  // zero: sends all ways
+    float cos_outer[kLanes], fall[kLanes];                 // of spots: 1 / (cos inner − cos outer)
+  };
+  static void set_lane(const Light& light, std::size_t lane, Lanes& lanes);
+  template <class Response>
+  double weigh_by(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
+  float distant_weight(std::size_t light, Vec3f normal) const;
+  Pick pick_from_tree(Vec3f point, Vec3f normal, double u) const;
+
+  const Lights& lights_;
+  std::vector<std::size_t> order_;  // punctual lights, neighbours together, then those at infinity
+  std::vector<std::size_t> place_;  // per light, in order_
+  std::size_t placed_ = 0;          // lights with a position
+  std::vector<Lanes> lanes_;
+  LightTree tree_;
+};
+
+}  // namespace chiaro::renderer
