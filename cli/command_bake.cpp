@@ -47,7 +47,7 @@ void print_summary(Session& session, const BakeCommand& options, const inverse::
 int run_bake(const BakeCommand& options) {
   Session session(options.common);
   require_writable(options.output);
-  const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
+  const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   environment_of(stage, options.transport.environment, session);  // refused where a solve would refuse it
   const inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);
   const inverse::LightGrid grid =

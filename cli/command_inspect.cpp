@@ -8,6 +8,7 @@
 #include "cli/inspect.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
+#include "cli/scene_options.h"
 #include "cli/session.h"
 #include "renderer/core/atomic_file.h"
 
@@ -17,6 +18,7 @@ namespace {
 struct InspectCommand {
   CommonOptions common;
   std::string file;
+  renderer::LoadOptions load;  // of a scene
 };
 
 bool mentions(const std::string& bytes, const char* text) { return bytes.find(text) != std::string::npos; }
@@ -38,9 +40,9 @@ bool is_vertex_mesh(const std::string& bytes) {
   return mentions_any(bytes, {"\"generator\":\"chiaro\"", "\"COLOR_0\""}) && !is_dressed(bytes);
 }
 
-Inspection inspect(const std::string& file) {
+Inspection inspect(const std::string& file, const renderer::LoadOptions& load) {
   if (has_extension(file, {".glb", ".gltf"})) {
-    return is_vertex_mesh(renderer::read_file(file)) ? inspect_vertex_mesh(file) : inspect_scene(file);
+    return is_vertex_mesh(renderer::read_file(file)) ? inspect_vertex_mesh(file) : inspect_scene(file, load);
   }
   if (has_extension(file, {".json"})) {
     return mentions(renderer::read_file(file), "\"strokes\"") ? inspect_strokes(file) : inspect_light_file(file);
@@ -50,7 +52,7 @@ Inspection inspect(const std::string& file) {
 
 int run_inspect(const InspectCommand& options) {
   Session session(options.common);
-  Inspection inspection = inspect(options.file);
+  Inspection inspection = inspect(options.file, options.load);
   session.warn(inspection.warnings);
   inspection.summary.emplace_back("warnings", json_list(inspection.warnings));
   session.finish(inspection.summary, aligned_rows(inspection.rows));
@@ -62,6 +64,7 @@ int run_inspect(const InspectCommand& options) {
 CommandRun add_inspect(CLI::App& command) {
   const auto options = std::make_shared<InspectCommand>();
   add_input(command, {"file", "FILE", "Scene, light file, strokes, receivers, target, cache or image"}, options->file);
+  add_scene_options(command, options->load);
   add_common_options(command, options->common);
   set_examples(command, "  chiaro inspect room.glb\n  chiaro inspect room.exr --json");
   return [options] { return run_inspect(*options); };

@@ -30,7 +30,7 @@ constexpr float kUnpaintedWeightOnBlack = 0.05F;
 
 // What the strokes are applied to.
 inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
-  const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
+  const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   if (!options.from.empty()) {
     inverse::Target base = inverse::load_target(options.from);
     require_same_scene(*stage.tracer, base.receivers, options.from);

@@ -7,6 +7,7 @@
 #include "cli/common_options.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
+#include "cli/scene_options.h"
 #include "cli/session.h"
 #include "cli/transport_options.h"
 #include "inverse/transport/receivers.h"
@@ -18,6 +19,7 @@ namespace {
 struct ReceiversCommand {
   CommonOptions common;
   std::string scene, output;
+  renderer::LoadOptions load;
   float max_edge = 0;
 };
 
@@ -34,7 +36,7 @@ void print_summary(Session& session, const ReceiversCommand& options, const inve
 int run_receivers(const ReceiversCommand& options) {
   Session session(options.common);
   require_writable(options.output);
-  const renderer::LoadedScene loaded = renderer::load_gltf(options.scene);
+  const renderer::LoadedScene loaded = renderer::load_gltf(options.scene, options.load);
   session.warn(loaded.warnings);
   const inverse::Receivers receivers = inverse::make_receivers(loaded.scene, {.max_edge = options.max_edge});
   session.stop_if_interrupted();
@@ -50,6 +52,7 @@ CommandRun add_receivers(CLI::App& command) {
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command, {"-o,--output", "R.glb", "The receivers"}, options->output, {".glb", ".gltf"});
   add_max_edge_option(command, options->max_edge);
+  add_scene_options(command, options->load);
   add_common_options(command, options->common);
   set_examples(command, "  chiaro receivers room.glb -o room_receivers.glb --max-edge 0.1");
   return [options] { return run_receivers(*options); };

@@ -21,7 +21,7 @@ constexpr int kDefaultSamples = 64;
 
 struct RenderCommand {
   CommonOptions common;
-  TransportOptions transport{.materials = {}, .samples = kDefaultSamples, .bounces = {}};
+  TransportOptions transport{.materials = {}, .load = {}, .samples = kDefaultSamples, .bounces = {}};
   FrameOptions frame;
   std::string scene, lights, camera, output;
   bool preview = false;
@@ -79,7 +79,7 @@ int interrupted_with(const std::string& output) {
 int run_render(const RenderCommand& options) {
   Session session(options.common);
   require_outputs(options);
-  const LoadedStage stage = load_stage(options.scene, options.transport.materials, session);
+  const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   warn_of_darkness(stage, lights, session);
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);

@@ -115,7 +115,8 @@ int run_run(const RunCommand& options) {
   Session session(options.common);
   require_not_a_file(options.folder());
   require_color_choices(options.frame, true);
-  const LoadedStage stage = load_stage(options.scene, options.choices.transport.materials, session);
+  const LoadedStage stage =
+      load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
   const inverse::Target target = load_solve_target(stage, options.choices);
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);

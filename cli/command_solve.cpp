@@ -55,7 +55,8 @@ int run_solve(const SolveCommand& options) {
   Session session(options.common);
   require_writable(options.output);
   require_writable(beside(options.output, ".json"));
-  const LoadedStage stage = load_stage(options.scene, options.choices.transport.materials, session);
+  const LoadedStage stage =
+      load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
   const inverse::Target target = load_solve_target(stage, options.choices);
   session.stop_if_interrupted();

@@ -6,6 +6,7 @@
 
 #include "cli/json_output.h"
 #include "cli/text_output.h"
+#include "renderer/io/load_gltf.h"
 #include "renderer/scene/light.h"
 
 namespace chiaro::cli {
@@ -16,20 +17,20 @@ struct Inspection {
   std::vector<TextRow> rows;
   std::vector<std::string> warnings;
 
-  void add(const std::string& key, Json value, const std::string& label, const std::string& text) {
-    summary.emplace_back(key, std::move(value));
-    rows.emplace_back(label, text);
-  }
+  void add(const std::string& key, Json value, const std::string& label, const std::string& text);
 };
 
 // "kind" and "file", which every inspection starts with.
 Inspection start_inspection(const std::string& kind, const std::string& file);
 
-Inspection inspect_scene(const std::string& file);
+Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& load);
 Inspection inspect_light_file(const std::string& file);
 Inspection inspect_strokes(const std::string& file);
 Inspection inspect_vertex_mesh(const std::string& file);  // receivers and targets
 Inspection inspect_picture(const std::string& file);      // frames, other images, and transport caches
+
+// The names, if any.
+void add_variants(Inspection& inspection, const std::vector<std::string>& variants);
 
 // One row per light; intensities in cd, illuminances in lux.
 void add_lights(Inspection& inspection, const renderer::Lights& lights);

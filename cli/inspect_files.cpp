@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/inspect.h"
 #include "inverse/target/paint.h"
@@ -25,11 +26,21 @@ const char* name_of_mode(inverse::BrushMode mode) {
 
 }  // namespace
 
+void Inspection::add(const std::string& key, Json value, const std::string& label, const std::string& text) {
+  summary.emplace_back(key, std::move(value));
+  rows.emplace_back(label, text);
+}
+
 Inspection start_inspection(const std::string& kind, const std::string& file) {
   Inspection inspection;
   inspection.add("kind", kind, "kind", kind);
   inspection.add("file", file, "file", file);
   return inspection;
+}
+
+void add_variants(Inspection& inspection, const std::vector<std::string>& variants) {
+  inspection.summary.emplace_back("variants", json_list(variants));
+  if (!variants.empty()) inspection.rows.emplace_back("variants", fmt::format("{}", fmt::join(variants, ", ")));
 }
 
 Inspection inspect_light_file(const std::string& file) {

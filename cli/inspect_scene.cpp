@@ -117,13 +117,14 @@ void add_lights(Inspection& inspection, const renderer::Lights& lights) {
   inspection.summary.emplace_back("lights", list);
 }
 
-Inspection inspect_scene(const std::string& file) {
-  const renderer::LoadedScene loaded = renderer::load_gltf(file);
+Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& load) {
+  const renderer::LoadedScene loaded = renderer::load_gltf(file, load);
   Inspection inspection = start_inspection("scene", file);
   inspection.warnings = loaded.warnings;
   add_geometry(inspection, loaded.scene);
   add_bounds(inspection, renderer::bounds(loaded.scene));
   add_materials(inspection, loaded.scene);
+  add_variants(inspection, loaded.variants);
   add_cameras(inspection, loaded.scene);
   add_lights(inspection, loaded.lights);
   const std::string fingerprint = renderer::fingerprint(loaded.scene);

@@ -17,7 +17,9 @@ bool parse_model(const std::string& text) {
 }  // namespace
 
 void add_material_options(CLI::App& command, MaterialOptions& options) {
-  add_parsed(command, {"--materials", "MODEL", "gltf, or diffuse: Lambert of the base colour (default gltf)"},
+  add_parsed(command,
+             {"--materials", "MODEL",
+              "gltf, or diffuse: Lambert of the base colour, textures filtered as stored (default gltf)"},
              [&options](const std::string& text) { options.diffuse = parse_model(text); });
   add_parsed(command, {"--albedo", "R[,G,B]", "Every surface a Lambert of this albedo, 0 to 1"},
              [&options](const std::string& text) { options.albedo = parse_albedo(text); });

@@ -4,13 +4,13 @@
 
 #include "renderer/core/error.h"
 #include "renderer/io/light_file.h"
-#include "renderer/io/load_gltf.h"
 #include "renderer/scene/texture_mip_maps.h"
 
 namespace chiaro::cli {
 
-LoadedStage load_stage(const std::string& path, const MaterialOptions& materials, Session& session) {
-  renderer::LoadedScene loaded = renderer::load_gltf(path);
+LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
+                       Session& session) {
+  renderer::LoadedScene loaded = renderer::load_gltf(path, load);
   session.warn(loaded.warnings);
   session.stop_if_interrupted();
   if (renderer::drawn_triangle_count(loaded.scene) == 0) {

@@ -6,6 +6,7 @@
 #include "cli/environment_options.h"
 #include "cli/material_options.h"
 #include "cli/session.h"
+#include "renderer/io/load_gltf.h"
 #include "renderer/scene/light.h"
 #include "renderer/scene/scene.h"
 #include "renderer/trace/ray_tracer.h"
@@ -21,7 +22,8 @@ struct LoadedStage {
 
 // Loads a glTF scene, replaces its materials, passes its warnings on, and builds the ray tracer. Error where it has no
 // triangles.
-LoadedStage load_stage(const std::string& path, const MaterialOptions& materials, Session& session);
+LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
+                       Session& session);
 
 // The lights of the file if one is named, else those of the scene; with the environment that the options ask for, or
 // else the file's, or else the scene's, which belongs to it as emissive surfaces do.

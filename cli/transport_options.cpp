@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/add_options.h"
+#include "cli/scene_options.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -22,6 +23,7 @@ void add_transport_options(CLI::App& command, TransportOptions& options, const s
             options.bounces, {0, kMaxBounces});
   add_environment_options(command, options.environment);
   add_material_options(command, options.materials);
+  add_scene_options(command, options.load);
 }
 
 renderer::TraceOptions trace_options(const TransportOptions& transport, const CommonOptions& common) {

@@ -9,6 +9,7 @@
 #include "inverse/transport/light_grid.h"
 #include "inverse/transport/receivers.h"
 #include "inverse/transport/transport_cache.h"
+#include "renderer/io/load_gltf.h"
 #include "renderer/trace/trace_illumination.h"
 
 namespace chiaro::cli {
@@ -16,6 +17,7 @@ namespace chiaro::cli {
 // What every command that transports light has.
 struct TransportOptions {
   MaterialOptions materials;
+  renderer::LoadOptions load;
   int samples = 256;
   std::optional<int> bounces;  // indirect ones; absent: until they no longer matter
   EnvironmentOptions environment = {};

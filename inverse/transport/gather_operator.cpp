@@ -34,8 +34,9 @@ struct GatherHit {
 std::optional<GatherHit> gather(const RayTracer& tracer, const SurfaceSample& from, Sampler& sampler) {
   const Vec3f local = renderer::sample_cosine_hemisphere(sampler.next_2d());
   const Vec3f direction = normalize(renderer::Frame3f(from.normal).world_from_local(local));
-  const renderer::Ray ray{renderer::offset_point(from.position, from.normal), direction, 0, renderer::kInfinity,
-                          sampler.next_bits()};
+  renderer::Ray ray{renderer::offset_point(from.position, from.normal), direction, 0, renderer::kInfinity,
+                    sampler.next_bits()};
+  ray.clear = renderer::ClearSurfaces::kPassByChance;
   const auto hit = tracer.intersect(ray);
   if (!hit) return std::nullopt;
   const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);

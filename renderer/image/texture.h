@@ -16,7 +16,8 @@ struct Texture {
   std::vector<std::uint8_t> rgba;  // 4 * width * height
   bool nearest = false;            // magnification filter
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
-  std::vector<std::vector<std::uint8_t>> mips;  // RGBA of levels 1, 2, …; empty: none are made (mip_maps.h)
+  bool filtered_as_stored = false;                // sRGB values are blended as they are stored, and decoded afterwards
+  std::vector<std::vector<std::uint8_t>> mips{};  // RGBA of levels 1, 2, …; empty: none are made (mip_maps.h)
 };
 
 struct MipLevel {

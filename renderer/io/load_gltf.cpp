@@ -10,6 +10,7 @@
 #include "renderer/io/gltf_materials.h"
 #include "renderer/io/gltf_nodes.h"
 #include "renderer/io/gltf_primitives.h"
+#include "renderer/io/gltf_variants.h"
 #include "renderer/io/mesh_repair.h"
 
 namespace chiaro::renderer {
@@ -24,7 +25,8 @@ Material default_material() {
 // Meshes are read when a node first asks for them, and shared from then on.
 class MeshReader {
  public:
-  MeshReader(const GltfDocument& document, Scene& scene) : document_(document), scene_(scene) {}
+  MeshReader(const GltfDocument& document, Scene& scene, int variant)
+      : document_(document), scene_(scene), variant_(variant) {}
 
   // The scene's meshes for the primitives of a glTF mesh.
   const std::vector<int>& meshes_of(int gltf_mesh) {
@@ -48,6 +50,7 @@ class MeshReader {
     }
     repair_mesh(*mesh, repairs_);
     if (mesh->triangles.empty()) return;
+    mesh->material = material_in_variant(document_, ref, variant_, mesh->material);
     if (mesh->material < 0) mesh->material = default_material_index();
     meshes.push_back(int(scene_.meshes.size()));
     scene_.meshes.push_back(*std::move(mesh));
@@ -63,6 +66,7 @@ class MeshReader {
 
   const GltfDocument& document_;
   Scene& scene_;
+  int variant_;
   std::map<int, std::vector<int>> meshes_;
   MeshRepairs repairs_;
   std::size_t without_triangles_ = 0;
@@ -120,11 +124,13 @@ void warn_of_motion(const GltfJson& json, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-LoadedScene load_gltf(const std::filesystem::path& path) {
+LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
   GltfDocument document = open_gltf(path);
+  const int variant = find_variant(document, options.variant);
   load_buffers(document);
   LoadedScene loaded;
   loaded.warnings = document.warnings;
+  loaded.variants = variant_names(document);
   warn_of_motion(document.json, loaded.warnings);
   Scene& scene = loaded.scene;
   scene.path = path.string();
@@ -134,7 +140,7 @@ LoadedScene load_gltf(const std::filesystem::path& path) {
   scene.textures = std::move(materials.textures);
 
   const std::vector<PlacedNode> nodes = place_nodes(document);
-  MeshReader reader(document, scene);
+  MeshReader reader(document, scene, variant);
   std::size_t flattened = 0;
   for (const PlacedNode& node : nodes) {
     if (node.mesh >= 0) flattened += add_instances(document, node, reader, scene);

@@ -11,6 +11,8 @@ void make_diffuse(Material& material) {
   material.normal_texture = {};
   material.emission = {};
   material.emission_texture = {};
+  material.unlit = false;
+  material.layers.reset();
 }
 
 // Alpha needs the base colour's texture, so a constant albedo keeps the texture only where alpha is used.
@@ -27,6 +29,7 @@ Scene with_materials(Scene scene, const MaterialOverride& materials) {
     make_diffuse(material);
     if (materials.albedo) set_albedo(material, *materials.albedo);
   }
+  for (Texture& texture : scene.textures) texture.filtered_as_stored = true;
   return scene;
 }
 

@@ -10,6 +10,21 @@ namespace {
 void add(Fingerprint& f, const TextureUse& use) {
   f.add(use.texture);
   f.add(use.uv_set);
+  if (use.transformed) f.add(use.transform.m);
+}
+
+void add(Fingerprint& f, const MaterialLayers& l) {
+  for (const float value : {l.ior, l.specular, l.transmission, l.clearcoat, l.clearcoat_roughness,
+                            l.clearcoat_normal_scale, l.sheen_roughness}) {
+    f.add(value);
+  }
+  for (const Vec3f color : {l.specular_color, l.absorption, l.sheen_color}) f.add(color);
+  f.add(l.solid);
+  for (const TextureUse* use : {&l.specular_texture, &l.specular_color_texture, &l.transmission_texture,
+                                &l.clearcoat_texture, &l.clearcoat_roughness_texture, &l.clearcoat_normal_texture,
+                                &l.sheen_color_texture, &l.sheen_roughness_texture}) {
+    add(f, *use);
+  }
 }
 
 void add(Fingerprint& f, const Material& m) {
@@ -23,6 +38,8 @@ void add(Fingerprint& f, const Material& m) {
   f.add(m.alpha_cutoff);
   f.add(m.lambert);
   f.add(m.constant_base_color);
+  if (m.unlit) f.add(m.unlit);
+  if (m.layers) add(f, *m.layers);
   for (const TextureUse* use :
        {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture}) {
     add(f, *use);

@@ -4,19 +4,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer/core/vec.h"
 #include "renderer/image/texture.h"
+#include "renderer/scene/material_layers.h"
+#include "renderer/scene/texture_use.h"
 
 namespace chiaro::renderer {
-
-// The use of a texture by a material; texture < 0: none.
-struct TextureUse {
-  int texture = -1;
-  int uv_set = 0;  // 0 or 1
-};
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
@@ -35,8 +32,10 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5F;
   bool double_sided = false;
-  bool lambert = false;              // Lambert of the base colour instead of metallic-roughness
-  bool constant_base_color = false;  // neither texture nor vertex colour changes the base colour; alpha still does
+  bool lambert = false;                  // Lambert of the base colour instead of metallic-roughness
+  bool constant_base_color = false;      // neither texture nor vertex colour changes the base colour; alpha still does
+  bool unlit = false;                    // KHR_materials_unlit: seen as its base colour, and no part of light transport
+  std::optional<MaterialLayers> layers;  // absent: plain metallic-roughness
 };
 
 using Triangle = std::array<std::uint32_t, 3>;

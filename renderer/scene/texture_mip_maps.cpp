@@ -30,7 +30,7 @@ void make_mip_maps(Scene& scene) {
   Uses uses(scene.textures.size());
   for (const Mesh& mesh : scene.meshes) add_uses(uses, scene.materials[mesh.material]);
   parallel_for(uses.size(), [&](std::size_t i) {
-    if (uses[i]) make_mip_maps(scene.textures[i], *uses[i]);
+    if (uses[i] && !scene.textures[i].filtered_as_stored) make_mip_maps(scene.textures[i], *uses[i]);
   });
 }
 

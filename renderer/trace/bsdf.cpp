@@ -1,14 +1,15 @@
 #include "renderer/trace/bsdf.h"
 
 #include "renderer/core/sampler.h"
-#include "renderer/trace/ggx.h"
-#include "renderer/trace/specular_albedo.h"
 
 namespace chiaro::renderer {
 namespace {
 
-constexpr float kDielectricF0 = 0.04F;
-constexpr float kLeastAlpha = 1e-3F;  // a smaller one is a mirror to any eye and overflows D
+bool has_layers(const SurfacePoint& point) {
+  if (!point.layers || point.lambert) return false;
+  const bool inside = point.layers->solid && !point.front;
+  return !inside && (point.layers->clearcoat > 0 || max_component(point.layers->sheen_color) > 0);
+}
 
 }  // namespace
 
@@ -17,15 +18,27 @@ Bsdf::Bsdf(const SurfacePoint& point)
       geometric_normal_(point.geometric_normal),
       smooth_normal_(point.smooth_normal),
       turned_(!(point.smooth_normal == point.shading_normal)),
-      base_color_(point.base_color),
-      metallic_(std::clamp(point.metallic, 0.0F, 1.0F)),
-      alpha_(std::max(point.roughness * point.roughness, kLeastAlpha)),
-      lambert_(point.lambert) {}
+      base_color_(point.unlit ? Vec3f{} : point.base_color),
+      lambert_(point.lambert || point.unlit),
+      base_(point) {
+  if (has_layers(point)) layers_.emplace(Layers{BsdfSheen(point), BsdfClearcoat(point)});
+}
 
-bool Bsdf::above_triangle(Vec3f direction) const { return dot(direction, geometric_normal_) > 0; }
+bool Bsdf::sees(Vec3f direction, float local_z) const {
+  if (sides_agree(direction, local_z)) return true;
+  return !transmits() && local_z > 0 && dot(direction, smooth_normal_) > 0;
+}
 
-bool Bsdf::above_horizon(Vec3f direction) const {
-  return above_triangle(direction) || dot(direction, smooth_normal_) > 0;
+Bsdf::Sketch Bsdf::sketch() const {
+  const float color = max_component(base_color_);
+  if (lambert_) return {color, 0, 1};
+  if (base_.transmits()) return {};
+  Sketch sketch = base_.sketch();
+  if (layers_) {
+    sketch.diffuse += layers_->sheen.albedo(1);
+    if (layers_->clearcoat.present()) sketch.specular += layers_->clearcoat.albedo(frame_.normal);
+  }
+  return sketch;
 }
 
 float Bsdf::shadow_terminator(Vec3f to_light) const {
@@ -34,82 +47,105 @@ float Bsdf::shadow_terminator(Vec3f to_light) const {
   return g > 0 ? (g < 1 ? g * (1 + g - g * g) : 1) : 0;
 }
 
-Bsdf::Sketch Bsdf::sketch() const {
-  const float color = max_component(base_color_);
-  if (lambert_) return {color, 0, 1};
-  return {(1 - metallic_) * color, (1 - metallic_) * kDielectricF0 + metallic_ * color, alpha_};
+// What sheen and clearcoat leave of the light of the base.
+float Bsdf::below_layers(Vec3f to_viewer, Vec3f to_light) const {
+  if (!layers_) return 1;
+  const float o = std::abs(dot(to_viewer, frame_.normal)), i = std::abs(dot(to_light, frame_.normal));
+  return layers_->clearcoat.below(to_viewer, to_light) * layers_->sheen.below(o, i);
 }
 
-Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light) const {
+Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
-  if (wo.z <= 0 || wi.z <= 0 || !above_horizon(to_light)) return {};
-  const float fade = shadow_terminator(to_light);
-  if (lambert_) return (fade * wi.z * kInvPi) * base_color_;
-  const Vec3f h = normalize(wo + wi);
-  const float weight = ggx::schlick_weight(dot(wo, h));
-  const float specular = ggx::distribution(h.z, alpha_) * ggx::visibility(wo.z, wi.z, alpha_);
-  const float fd = kDielectricF0 + (1 - kDielectricF0) * weight;
-  const Vec3f fm = lerp(weight, base_color_, {1, 1, 1});
-  // What the coat does not send back, in and out.
-  const float below_o = 1 - specular_albedo(wo.z, alpha_).at(kDielectricF0);
-  const float below_i = 1 - specular_albedo(wi.z, alpha_).at(kDielectricF0);
-  const float below_mean = 1 - mean_specular_albedo(alpha_).at(kDielectricF0);
-  const Vec3f dielectric =
-      (fade * below_o * below_i / below_mean * kInvPi) * base_color_ + Vec3f{1, 1, 1} * (fd * specular);
-  return wi.z * lerp(metallic_, dielectric, specular * fm);
+  if (wo.z <= 0 || !sees(to_light, wi.z)) return {};
+  if (lambert_) return wi.z > 0 ? (shadow_terminator(to_light) * wi.z * kInvPi) * base_color_ : Vec3f{};
+  Vec3f value = base_.eval(wo, wi, source, wi.z > 0 ? shadow_terminator(to_light) : 1);
+  if (!layers_) return value;
+  value *= below_layers(to_viewer, to_light);
+  if (layers_->sheen.present()) value += layers_->clearcoat.below(to_viewer, to_light) * layers_->sheen.eval(wo, wi);
+  if (layers_->clearcoat.present() && wi.z > 0) value += layers_->clearcoat.eval(to_viewer, to_light, source);
+  return value;
 }
 
-float Bsdf::specular_probability(Vec3f wo) const {
-  if (lambert_) return 0;
-  const SpecularAlbedo albedo = specular_albedo(wo.z, alpha_);
-  const float coat = albedo.at(kDielectricF0), metal = albedo.at(luminance(base_color_));
-  const float specular = (1 - metallic_) * coat + metallic_ * metal;
-  const float diffuse = (1 - metallic_) * (1 - coat) * luminance(base_color_);
-  return specular + diffuse > 0 ? std::clamp(specular / (specular + diffuse), 0.1F, 1.0F) : 1.0F;
+Bsdf::Choice Bsdf::choice(Vec3f to_viewer, Vec3f wo) const {
+  if (!layers_) return {};
+  const float coat = layers_->clearcoat.present() ? layers_->clearcoat.albedo(to_viewer) : 0;
+  const float sheen = (1 - coat) * layers_->sheen.albedo(wo.z);
+  const float base = (1 - coat - sheen) * base_.albedo(wo);
+  const float total = coat + sheen + base;
+  return total > 0 ? Choice{coat / total, sheen / total} : Choice{};
 }
 
 float Bsdf::pdf(Vec3f to_viewer, Vec3f to_light) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
-  if (wo.z <= 0 || wi.z <= 0 || !above_triangle(to_light)) return 0;
-  const float specular = specular_probability(wo);
-  float pdf = (1 - specular) * wi.z * kInvPi;
-  if (specular > 0) pdf += specular * ggx::reflection_pdf(wo, normalize(wo + wi), alpha_);
+  if (wo.z <= 0 || !sides_agree(to_light, wi.z)) return 0;
+  if (lambert_) return wi.z > 0 ? wi.z * kInvPi : 0;
+  const Choice p = choice(to_viewer, wo);
+  float pdf = p.base() * base_.pdf(wo, wi);
+  if (p.sheen > 0) pdf += p.sheen * BsdfSheen::pdf(wi);
+  if (p.clearcoat > 0) pdf += p.clearcoat * layers_->clearcoat.pdf(to_viewer, to_light);
   return pdf;
+}
+
+std::optional<Bsdf::Sample> Bsdf::sample_lambert(Vec2f u) const {
+  const Vec3f wi = sample_cosine_hemisphere(u);
+  if (wi.z <= 0) return std::nullopt;
+  Sample s{.direction = normalize(frame_.world_from_local(wi)), .weight = {}, .pdf = wi.z * kInvPi};
+  if (!(dot(s.direction, geometric_normal_) > 0) || !(s.pdf > 0)) return std::nullopt;
+  s.weight = shadow_terminator(s.direction) * base_color_;
+  return s;
+}
+
+Bsdf::Sample Bsdf::straight_sample(Vec3f to_viewer, float probability) const {
+  return {.direction = -to_viewer, .weight = straight(to_viewer) / probability, .straight = true};
 }
 
 std::optional<Bsdf::Sample> Bsdf::sample(Vec3f to_viewer, Vec2f u, float lobe) const {
   const Vec3f wo = frame_.local_from_world(to_viewer);
   if (wo.z <= 0) return std::nullopt;
-  Vec3f wi;
-  if (lobe < specular_probability(wo)) {
-    const Vec3f h = ggx::sample_visible_normal(wo, alpha_, u);
-    wi = 2 * dot(wo, h) * h - wo;
-  } else {
-    wi = sample_cosine_hemisphere(u);
-  }
-  if (wi.z <= 0) return std::nullopt;
+  if (lambert_) return sample_lambert(u);
+  const Choice p = choice(to_viewer, wo);
   Sample s;
-  s.direction = normalize(frame_.world_from_local(wi));
-  if (lambert_) {
-    if (!above_triangle(s.direction)) return std::nullopt;
-    s.pdf = wi.z * kInvPi;
-    s.weight = shadow_terminator(s.direction) * base_color_;
-    return s.pdf > 0 ? std::optional(s) : std::nullopt;
+  if (lobe < p.clearcoat) {
+    const auto direction = layers_->clearcoat.sample(to_viewer, u);
+    if (!direction) return std::nullopt;
+    s.direction = *direction;
+    s.rough = layers_->clearcoat.rough();
+  } else if (lobe < p.clearcoat + p.sheen) {
+    s.direction = normalize(frame_.world_from_local(BsdfSheen::sample(u)));
+  } else {
+    const auto below = base_.sample(wo, u, std::min((lobe - p.clearcoat - p.sheen) / p.base(), 1 - 0x1p-24F));
+    if (!below) return std::nullopt;
+    if (below->straight) return straight_sample(to_viewer, p.base() * below->probability);
+    s.direction = normalize(frame_.world_from_local(below->direction));
+    s.rough = below->rough;
   }
   s.pdf = pdf(to_viewer, s.direction);
   if (!(s.pdf > 0)) return std::nullopt;
   s.weight = eval(to_viewer, s.direction) / s.pdf;
-  return s;
+  return max_component(s.weight) > 0 ? std::optional(s) : std::nullopt;
+}
+
+Vec3f Bsdf::straight(Vec3f to_viewer) const {
+  if (!transmits()) return {};
+  const Vec3f wo = frame_.local_from_world(to_viewer);
+  return wo.z > 0 ? below_layers(to_viewer, -to_viewer) * base_.straight(wo) : Vec3f{};
+}
+
+Vec3f Bsdf::clear(Vec3f to_viewer) const {
+  if (!transmits()) return {};
+  const Vec3f wo = frame_.local_from_world(to_viewer);
+  return wo.z > 0 ? below_layers(to_viewer, -to_viewer) * base_.clear(wo) : Vec3f{};
 }
 
 Vec3f hemispherical_albedo(const SurfacePoint& point) {
+  if (point.unlit) return {};
   if (point.lambert) return point.base_color;
-  const float metallic = std::clamp(point.metallic, 0.0F, 1.0F);
-  const SpecularAlbedo albedo = mean_specular_albedo(std::max(point.roughness * point.roughness, kLeastAlpha));
-  const float coat = albedo.at(kDielectricF0);
-  const Vec3f dielectric = Vec3f{coat, coat, coat} + (1 - coat) * point.base_color;
-  const Vec3f metal = albedo.scale * point.base_color + Vec3f{1, 1, 1} * albedo.bias;
-  return lerp(metallic, dielectric, metal);
+  Vec3f albedo = BsdfBase(point).hemispherical_reflectance();
+  if (!has_layers(point)) return albedo;
+  const Vec3f sheen = BsdfSheen(point).mean_albedo();
+  const float coat = BsdfClearcoat(point).mean_albedo();
+  albedo = sheen + (1 - max_component(sheen)) * albedo;
+  return coat * Vec3f{1, 1, 1} + (1 - coat) * albedo;
 }
 
 }  // namespace chiaro::renderer

@@ -1,19 +1,15 @@
 #pragma once
-// Scattering at a surface: Lambert, or glTF 2.0's metallic-roughness (appendix B of the specification):
-//   f = (1 − metallic) (diffuse + F_d S) + metallic F_m S,  S = V D,
-// D: GGX of α = roughness², V: height-correlated Smith, F: Schlick with F0 = 0.04 and F0 = base colour c. In the
-// appendix' simplest form, diffuse = (1 − F_d) c/π, a white surface sends back up to 1.2 times the light that falls on
-// it at grazing angles. Here the diffuse part gets just what the coat leaves, so that a white dielectric's albedo is
-// one:
-//   diffuse = c/π (1 − E(θ_o)) (1 − E(θ_i)) / (1 − E_mean),  E: albedo of F_d S.
-// Source of the last: Kelemen & Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, 2001.
+// Scattering at a surface: Lambert, or glTF's metallic-roughness (bsdf_base) under sheen (bsdf_sheen) under a clearcoat
+// (bsdf_clearcoat). Directions are unit and point away from the surface; the viewer is on the side of the normals, the
+// light on either.
 // Where a normal map has turned the normal, diffuse light fades before the smooth surface turns away from it.
 // Source: Chiang, Li, Burley, Taming the Shadow Terminator, 2019.
-// Directions are unit and point away from the surface.
 
 #include <optional>
 
-#include "renderer/trace/surface_point.h"
+#include "renderer/trace/bsdf_base.h"
+#include "renderer/trace/bsdf_clearcoat.h"
+#include "renderer/trace/bsdf_sheen.h"
 
 namespace chiaro::renderer {
 
@@ -21,39 +17,59 @@ class Bsdf {
  public:
   explicit Bsdf(const SurfacePoint& point);
   Vec3f normal() const { return frame_.normal; }  // shading normal
-  // How much it scatters, roughly: a diffuse part, and one about the mirror direction.
-  struct Sketch {
-    float diffuse = 1, specular = 0;  // albedo; specular at normal incidence
-    float alpha = 1;                  // GGX
-  };
+  // How much it scatters, roughly. Of surfaces that let light through: as much from all sides.
+  using Sketch = BsdfSketch;
   Sketch sketch() const;
 
-  // f · cosθ_i, per channel; zero below the shading normal's horizon, and where the light is below both the triangle's
-  // and the smooth surface's that vertex normals stand for.
-  Vec3f eval(Vec3f to_viewer, Vec3f to_light) const;
-  // Density of sample(), per steradian. Nothing below the triangle's horizon is sampled: rays would meet the triangle.
+  // f · |cosθ_i|, per channel; zero where shading normal and triangle disagree about the side of the light, unless the
+  // smooth surface that vertex normals stand for sees it, and for what goes straight through.
+  Vec3f eval(Vec3f to_viewer, Vec3f to_light, LightSource source = LightSource::kExtended) const;
+  // Density of sample(), per steradian; without what goes straight through. Nothing that is reflected below the
+  // triangle's horizon is sampled: rays would meet the triangle.
   float pdf(Vec3f to_viewer, Vec3f to_light) const;
 
   struct Sample {
     Vec3f direction;
-    Vec3f weight;  // f · cosθ / pdf
+    Vec3f weight;  // f · |cosθ| / pdf
     float pdf = 0;
+    bool straight = false;  // through a thin clear sheet, by chance: pdf is not set, as the path has not turned
+    bool rough = true;      // spread widely enough for LightSource::kPunctualBlurred
   };
   std::optional<Sample> sample(Vec3f to_viewer, Vec2f u, float lobe) const;
 
+  // Part of the light from behind a thin clear sheet that arrives from there unscattered; zero for other surfaces.
+  Vec3f straight(Vec3f to_viewer) const;
+  // Part that shadow rays of punctual lights bring through a clear sheet or the clear boundary of a solid.
+  Vec3f clear(Vec3f to_viewer) const;
+
+  bool transmits() const { return !lambert_ && base_.transmits(); }
+
  private:
-  float specular_probability(Vec3f to_viewer) const;
-  bool above_triangle(Vec3f direction) const;
-  bool above_horizon(Vec3f direction) const;
+  struct Layers {
+    BsdfSheen sheen;
+    BsdfClearcoat clearcoat;
+  };
+  // Probabilities of sampling each.
+  struct Choice {
+    float clearcoat = 0, sheen = 0;
+    float base() const { return 1 - clearcoat - sheen; }
+  };
+  Choice choice(Vec3f to_viewer, Vec3f wo) const;
+  float below_layers(Vec3f to_viewer, Vec3f to_light) const;
+  bool sides_agree(Vec3f direction, float local_z) const { return dot(direction, geometric_normal_) * local_z > 0; }
+  bool sees(Vec3f direction, float local_z) const;
   float shadow_terminator(Vec3f to_light) const;
+  std::optional<Sample> sample_lambert(Vec2f u) const;
+  Sample straight_sample(Vec3f to_viewer, float probability) const;
 
   Frame3f frame_;
   Vec3f geometric_normal_;
   Vec3f smooth_normal_;
   bool turned_;  // the shading normal is another one
   Vec3f base_color_;
-  float metallic_, alpha_;
   bool lambert_;
+  BsdfBase base_;
+  std::optional<Layers> layers_;  // absent: neither sheen nor clearcoat
 };
 
 // Fraction of the light falling on a point under a cosine-weighted sky that it sends back: albedo of the Lambert

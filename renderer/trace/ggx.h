@@ -4,14 +4,9 @@
 // shadowing: Heitz, Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, 2014.
 
 #include "renderer/core/vec.h"
+#include "renderer/trace/fresnel.h"
 
 namespace chiaro::renderer::ggx {
-
-// Schlick's (1 − cosθ)⁵.
-inline float schlick_weight(float cosine) {
-  const float m = std::clamp(1 - cosine, 0.0F, 1.0F);
-  return m * m * m * m * m;
-}
 
 inline float distribution(float cosine_h, float alpha) {
   const float a2 = alpha * alpha;

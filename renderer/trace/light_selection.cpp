@@ -4,6 +4,13 @@
 
 #include "renderer/trace/light_sampling.h"
 
+// For wider vector units too, chosen at run time; without contraction (CMakeLists.txt), so that all give the same bits.
+#if defined(__x86_64__) && !defined(CHIARO_SANITIZED)
+#define CHIARO_DISPATCH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define CHIARO_DISPATCH
+#endif
+
 namespace chiaro::renderer {
 namespace {
 
@@ -39,6 +46,9 @@ std::vector<LightBounds> bounds_of(const Lights& lights) {
   return bounds;
 }
 
+// The zero vector stands for a surface that all sides matter of.
+bool any_side(Vec3f normal) { return !(length_squared(normal) > 0); }
+
 }  // namespace
 
 LightSelection::LightSelection(const Lights& lights) : lights_(lights), place_(lights.size(), 0) {
@@ -54,6 +64,7 @@ LightSelection::LightSelection(const Lights& lights) : lights_(lights), place_(l
     return;
   }
   lanes_.resize((placed_ + kLanes - 1) / kLanes);
+  groups_ = (order_.size() + kLanes - 1) / kLanes;
   for (std::size_t k = 0; k < lanes_.size() * kLanes; ++k) {
     const Light nothing = PointLight{};
     set_lane(k < placed_ ? lights[order_[k]] : nothing, k % kLanes, lanes_[k / kLanes]);
@@ -76,44 +87,69 @@ void LightSelection::set_lane(const Light& light, std::size_t lane, Lanes& lanes
 
 // Irradiance as sample_punctual has it, times response(direction to the light, its cosine).
 template <class Response>
-double LightSelection::weigh_by(Vec3f p, Vec3f n, const Response& response, Weights& weights) const {
+[[gnu::always_inline]] inline void LightSelection::weigh_by(Vec3f p, Vec3f n, const Response& response,
+                                                            Weights& weights) const {
   constexpr float kLargest = 1e30F;
+  const float least_cosine = any_side(n) ? 1.0F : 0.0F;
   for (std::size_t group = 0; group < lanes_.size(); ++group) {
     const Lanes& l = lanes_[group];
-    float* out = &weights[group * kLanes];
+    float* out = &weights.of_light[group * kLanes];
     for (std::size_t k = 0; k < kLanes; ++k) {
       const Vec3f d{l.x[k] - p.x, l.y[k] - p.y, l.z[k] - p.z};
       const float scale = 1 / std::sqrt(std::max(dot(d, d), 1e-30F));
-      const float cosine = std::max(0.0F, scale * dot(n, d));
+      const float cosine = std::max(least_cosine, scale * dot(n, d));
       const float from_axis = -scale * (l.axis_x[k] * d.x + l.axis_y[k] * d.y + l.axis_z[k] * d.z);
       const float fall = std::min(1.0F, std::max(0.0F, (from_axis - l.cos_outer[k]) * l.fall[k]));
       const float irradiance = l.intensity[k] * cosine * (scale * scale) * (fall * fall);
       out[k] = std::min(irradiance * response(scale * d, cosine), kLargest);
     }
   }
+  for (std::size_t k = placed_; k < groups_ * kLanes; ++k) weights.of_light[k] = 0;
   for (std::size_t k = placed_; k < order_.size(); ++k) {
     const Vec3f to_light = sample_punctual(lights_[order_[k]], p).to_light;
-    weights[k] = distant_weight(order_[k], n) * response(to_light, std::max(0.0F, dot(n, to_light)));
+    weights.of_light[k] = distant_weight(order_[k], n) * response(to_light, std::max(least_cosine, dot(n, to_light)));
   }
-  double total = 0;
-  for (std::size_t k = 0; k < order_.size(); ++k) total += double(weights[k]);
-  return total;
+  weights.total = 0;
+  for (std::size_t group = 0; group < groups_; ++group) {
+    const float* w = &weights.of_light[group * kLanes];
+    weights.of_group[group] = ((w[0] + w[1]) + (w[2] + w[3])) + ((w[4] + w[5]) + (w[6] + w[7]));
+    weights.total += double(weights.of_group[group]);
+  }
 }
 
-double LightSelection::weigh(Vec3f point, Vec3f normal, Weights& weights) const {
-  return weigh_by(
-      point, normal, [](Vec3f, float) { return 1.0F; }, weights);
+CHIARO_DISPATCH void LightSelection::weigh(Vec3f point, Vec3f normal, Weights& weights) const {
+  weigh_by(
+      point, normal, [](Vec3f, float) __attribute__((always_inline)) { return 1.0F; }, weights);
+}
+
+LightSelection::Pick LightSelection::Walk::find(double at) {
+  for (; group_ < selection_.groups_; ++group_) {
+    const double after = before_ + double(weights_.of_group[group_]);
+    if (at < after) break;
+    before_ = after;
+  }
+  if (group_ == selection_.groups_) return {};
+  double sum = before_;
+  Pick last;
+  for (std::size_t k = group_ * kLanes; k < (group_ + 1) * kLanes; ++k) {
+    const double w = double(weights_.of_light[k]);
+    if (!(w > 0)) continue;
+    last = {selection_.order_[k], float(w / weights_.total)};
+    sum += w;
+    if (at < sum) break;
+  }
+  return last;
 }
 
 // Lambert, and GGX with Schlick's Fresnel and without most of its shadowing.
-double LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface,
-                             Weights& weights) const {
+CHIARO_DISPATCH void LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface,
+                                           Weights& weights) const {
   constexpr float kLeastDiffuse = 0.02F, kLeastCosine = 0.1F;
   if (surface.specular <= 0) return weigh(point, normal, weights);
   const float diffuse = std::max(surface.diffuse, kLeastDiffuse) * kInvPi;
   const float a2 = surface.alpha * surface.alpha, f0 = surface.specular;
   const float cosine_viewer = std::max(dot(normal, to_viewer), kLeastCosine);
-  const auto response = [&](Vec3f to_light, float cosine) {
+  const auto response = [&](Vec3f to_light, float cosine) __attribute__((always_inline)) {
     const Vec3f sum = to_viewer + to_light;
     const float scale = 1 / std::sqrt(std::max(dot(sum, sum), 1e-12F));
     const float n_h = std::min(scale * dot(normal, sum), 1.0F), v_h = std::min(scale * dot(to_viewer, sum), 1.0F);
@@ -121,27 +157,19 @@ double LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const B
     const float away = 1 - v_h, fresnel = f0 + (1 - f0) * (away * away) * (away * away) * away;
     return diffuse + 0.25F * distribution * fresnel / (cosine_viewer * std::max(cosine, kLeastCosine));
   };
-  return weigh_by(point, normal, response, weights);
+  weigh_by(point, normal, response, weights);
 }
 
 float LightSelection::distant_weight(std::size_t light, Vec3f normal) const {
   const PunctualSample s = sample_punctual(lights_[light], {});
-  return std::max(0.0F, dot(normal, s.to_light)) * max_component(s.irradiance);
+  return std::max(any_side(normal) ? 1.0F : 0.0F, dot(normal, s.to_light)) * max_component(s.irradiance);
 }
 
 LightSelection::Pick LightSelection::pick(Vec3f point, Vec3f normal, double u) const {
   if (!weighs_all()) return pick_from_tree(point, normal, u);
   Weights weights;
-  const double total = weigh(point, normal, weights), at = u * total;
-  double sum = 0;
-  Pick last;
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    if (!(weights[k] > 0)) continue;
-    sum += double(weights[k]);
-    last = {order_[k], float(double(weights[k]) / total)};
-    if (at < sum) break;
-  }
-  return last;
+  weigh(point, normal, weights);
+  return Walk(*this, weights).find(u * weights.total);
 }
 
 // The tree, then the lights at infinity.
@@ -170,8 +198,9 @@ float LightSelection::probability(std::size_t light, Vec3f point, Vec3f normal) 
   double total = 0, own = 0;
   if (weighs_all()) {
     Weights weights;
-    total = weigh(point, normal, weights);
-    own = order_.empty() ? 0 : double(weights[place_[light]]);
+    weigh(point, normal, weights);
+    total = weights.total;
+    own = order_.empty() ? 0 : double(weights.of_light[place_[light]]);
   } else {
     const double tree_weight = double(tree_.importance(point, normal));
     total = tree_weight;

@@ -30,22 +30,40 @@ class LightSelection {
     std::size_t light = 0;
     float probability = 0;  // 0: none brings anything
   };
-  // 0 ≤ u < 1. Neighbours in u are neighbours in space, so that stratified ones spread over the scene.
+  // normal: of the surface; the zero vector stands for one that light goes through, here and below. 0 ≤ u < 1.
+  // Neighbours in u are neighbours in space, so that stratified ones spread over the scene.
   Pick pick(Vec3f point, Vec3f normal, double u) const;
   // With which pick() gives the light.
   float probability(std::size_t light, Vec3f point, Vec3f normal) const;
 
-  // Where all are weighed: the lights, and the irradiance of each from the side of `normal`, lux of the brightest
-  // channel, in that order. Returns their sum.
-  std::span<const std::size_t> order() const { return order_; }
-  using Weights = std::array<float, kWeighed>;
-  double weigh(Vec3f point, Vec3f normal, Weights& weights) const;
+  // What lights would bring to a point, one by one, and in groups.
+  static constexpr std::size_t kLanes = 8;
+  struct Weights {
+    std::array<float, kWeighed + kLanes> of_light;  // in the order of lights_in_order(), padded with zeros
+    std::array<float, kWeighed / kLanes + 1> of_group;
+    double total = 0;
+  };
+  // Where all are weighed: irradiance from the side of `normal`, lux of the brightest channel.
+  void weigh(Vec3f point, Vec3f normal, Weights& weights) const;
   // The same times about what the surface would send of it to the viewer; above zero wherever the irradiance is.
-  double weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface, Weights& weights) const;
+  void weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface, Weights& weights) const;
+  std::span<const std::size_t> lights_in_order() const { return order_; }
+
+  // Goes through the weights to where their sum exceeds `at`, and further with each call. `at` must not fall.
+  class Walk {
+   public:
+    Walk(const LightSelection& selection, const Weights& weights) : selection_(selection), weights_(weights) {}
+    Pick find(double at);
+
+   private:
+    const LightSelection& selection_;
+    const Weights& weights_;
+    std::size_t group_ = 0;
+    double before_ = 0;  // sum of the groups before
+  };
 
  private:
-  // Lights side by side, so that four are weighed at once. Those at infinity come last, by themselves.
-  static constexpr std::size_t kLanes = 4;
+  // Lights side by side, so that a group is weighed at once. Those at infinity come last, by themselves.
   struct Lanes {
     float x[kLanes], y[kLanes], z[kLanes], intensity[kLanes];
     float axis_x[kLanes], axis_y[kLanes], axis_z[kLanes];  // zero: sends all ways
@@ -53,7 +71,7 @@ class LightSelection {
   };
   static void set_lane(const Light& light, std::size_t lane, Lanes& lanes);
   template <class Response>
-  double weigh_by(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
+  void weigh_by(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
   float distant_weight(std::size_t light, Vec3f normal) const;
   Pick pick_from_tree(Vec3f point, Vec3f normal, double u) const;
 
@@ -61,6 +79,7 @@ class LightSelection {
   std::vector<std::size_t> order_;  // punctual lights, neighbours together, then those at infinity
   std::vector<std::size_t> place_;  // per light, in order_
   std::size_t placed_ = 0;          // lights with a position
+  std::size_t groups_ = 0;
   std::vector<Lanes> lanes_;
   LightTree tree_;
 };

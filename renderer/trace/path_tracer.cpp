@@ -14,8 +14,10 @@ constexpr float kMostSurvival = 0.95F;
 // light; farther away scattered rays find as much, for less.
 constexpr float kSubpathReach = 0.1F;
 
+constexpr int kMostStraight = 1000;  // clear surfaces in a row
+
 // Lights that vertex 0 asks where there are many.
-constexpr int kAsked = 4;
+constexpr int kAsked = 2;
 
 // 0 where both are zero or infinite: a point of no measure.
 float balance_heuristic(float pdf, float other) {
@@ -59,19 +61,35 @@ struct PathTracer::Vertex {
 
   // Light from below the triangle's horizon that the smooth surface sees: shadow rays start up there.
   bool sees_past_triangle(Vec3f to_light) const {
-    return max_component(abs(lift)) > 0 && dot(triangle_normal, to_light) <= 0;
+    return max_component(abs(lift)) > 0 && dot(triangle_normal, to_light) <= 0 && !transmits();
   }
 
-  Vec3f eval(Vec3f to_light) const {
-    if (bsdf != nullptr) return bsdf->eval(to_viewer, to_light);
+  LightSource punctual = LightSource::kPunctual;  // how punctual lights are to be seen from here
+  const Media* media = nullptr;                   // on the viewer's side; nullptr: none
+
+  Vec3f eval(Vec3f to_light, LightSource source = LightSource::kExtended) const {
+    if (bsdf != nullptr) return bsdf->eval(to_viewer, to_light, source);
     const float value = std::max(0.0F, dot(normal, to_light)) * kInvPi;
     return {value, value, value};
   }
   float pdf(Vec3f to_light) const {
     return bsdf != nullptr ? bsdf->pdf(to_viewer, to_light) : std::max(0.0F, dot(normal, to_light)) * kInvPi;
   }
-  Vec3f pick_normal() const { return bsdf != nullptr ? bsdf->normal() : normal; }
-  Vec3f ray_origin() const { return offset_point(position, normal, rounding); }
+  bool transmits() const { return bsdf != nullptr && bsdf->transmits(); }
+  bool transmits_to(Vec3f direction) const { return transmits() && dot(direction, normal) < 0; }
+  // Positive where light arrives from that way at all.
+  float incident_cosine(Vec3f to_light) const {
+    const float cosine = dot(normal, to_light);
+    return transmits() ? std::abs(cosine) : cosine;
+  }
+  // Zero: light from all sides matters.
+  Vec3f pick_normal() const {
+    if (bsdf == nullptr) return normal;
+    return bsdf->transmits() ? Vec3f{} : bsdf->normal();
+  }
+  Vec3f ray_origin(Vec3f direction) const {
+    return offset_point(position, transmits_to(direction) ? -normal : normal, rounding);
+  }
   // Where a ray from so many metres away ends before it meets the vertex's own surface.
   Vec3f ray_end(float distance) const {
     return offset_point(position, normal, std::max(rounding, surface_rounding(distance, 0)));
@@ -85,7 +103,9 @@ PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounce
       emission_(lights),
       subpath_reach_(kSubpathReach * tracer.bounds().diagonal()),
       emitters_(scene_emission ? tracer.scene() : scene_without_emission()),
-      bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces) {
+      bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces),
+      clear_surfaces_(has_clear_surfaces(tracer.scene())),
+      solids_(has_solids(tracer.scene())) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (const auto* light = std::get_if<EnvironmentLight>(&lights[i]); light != nullptr && light->intensity > 0) {
       environments_.push_back({i, EnvironmentSampling(*light)});
@@ -93,33 +113,48 @@ PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounce
   }
 }
 
-float PathTracer::visibility(const Vertex& v, Vec3f to_light, float distance, Sampler& sampler) const {
+// 0: nothing arrives, 1: nothing is in between.
+Vec3f PathTracer::light_along(const Ray& ray, const Media* media) const {
+  const Passage passage = tracer_.passage(ray);
+  if (passage == Passage::kBlocked) return {};
+  if (passage == Passage::kClear) return clear_transmittance(tracer_, ray, media != nullptr ? *media : Media());
+  return media != nullptr ? media->transmittance(ray.far * length(ray.direction)) : Vec3f{1, 1, 1};
+}
+
+Vec3f PathTracer::light_through(const Vertex& v, Vec3f to_light, float distance, ClearSurfaces clear,
+                                Sampler& sampler) const {
   // A little short of the light, so that an emissive triangle does not hide itself.
   constexpr float kShort = 1e-4F;
-  const float far = distance == kInfinity ? kInfinity : distance * (1 - kShort);
-  const std::uint32_t alpha_seed = sampler.next_bits();
-  const Vec3f origin = v.ray_origin();
-  if (!v.sees_past_triangle(to_light)) return tracer_.occluded({origin, to_light, 0, far, alpha_seed}) ? 0.0F : 1.0F;
+  Ray ray{v.ray_origin(to_light), to_light};
+  ray.far = distance == kInfinity ? kInfinity : distance * (1 - kShort);
+  ray.alpha_seed = sampler.next_bits();
+  ray.clear = clear;
+  if (!v.sees_past_triangle(to_light)) return light_along(ray, v.media);
   const Vec3f lifted = offset_point(v.position + v.lift, v.normal, v.rounding);
-  if (tracer_.occluded({origin, lifted - origin, 0, 1, alpha_seed})) return 0;
-  const Vec3f along = far == kInfinity ? to_light : v.position + distance * to_light - lifted;
-  return tracer_.occluded({lifted, along, 0, far == kInfinity ? kInfinity : 1 - kShort, alpha_seed}) ? 0.0F : 1.0F;
+  Ray up = ray;
+  up.direction = lifted - ray.origin, up.far = 1;
+  const Vec3f to_lifted = light_along(up, v.media);
+  if (!(max_component(to_lifted) > 0)) return {};
+  ray.origin = lifted;
+  if (distance != kInfinity) ray.direction = v.position + distance * to_light - lifted, ray.far = 1 - kShort;
+  return to_lifted * light_along(ray, v.media);
 }
 
 void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const PunctualSample s = sample_punctual(lights_[i], v.position);
-    const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance;
-    if (max_component(value) > 0) light.add(v.index, i, visibility(v, s.to_light, s.distance, sampler) * value);
+    const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance;
+    if (max_component(value) > 0)
+      light.add(v.index, i, light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler) * value);
   }
 }
 
 void PathTracer::add_chosen(const Vertex& v, LightSelection::Pick chosen, Vec3f throughput, Sampler& sampler,
                             PathLight& light) const {
   const PunctualSample s = sample_punctual(lights_[chosen.light], v.position);
-  const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance / chosen.probability;
+  const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / chosen.probability;
   if (!(max_component(value) > 0) || !is_finite(value)) return;
-  light.add(v.index, chosen.light, visibility(v, s.to_light, s.distance, sampler) * value);
+  light.add(v.index, chosen.light, light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler) * value);
 }
 
 void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
@@ -131,18 +166,18 @@ void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Sampler& s
     }
     return;
   }
-  LightSelection::Weights weights;
   const Bsdf::Sketch surface = v.bsdf != nullptr ? v.bsdf->sketch() : Bsdf::Sketch{};
-  const double total = selection_.weigh(v.position, v.pick_normal(), v.to_viewer, surface, weights);
-  double sum = 0;
-  for (int i = 0, asked = 0; i < int(selection_.order().size()) && asked < kAsked; ++i) {
-    const double weight = double(weights[std::size_t(i)]);
-    sum += weight;
+  LightSelection::Weights weights;
+  selection_.weigh(v.position, v.pick_normal(), v.to_viewer, surface, weights);
+  LightSelection::Walk walk(selection_, weights);
+  // A light that is found more than once is asked once.
+  LightSelection::Pick found = walk.find(u / kAsked * weights.total);
+  for (int k = 0; k < kAsked;) {
+    const LightSelection::Pick chosen = found;
     int times = 0;
-    for (; asked < kAsked && (asked + u) * total < sum * kAsked; ++asked) ++times;
-    if (times == 0) continue;
-    const float expected_times = float(kAsked * weight / total);
-    add_chosen(v, {selection_.order()[std::size_t(i)], expected_times / float(times)}, throughput, sampler, light);
+    for (; k < kAsked && found.light == chosen.light; found = walk.find((k + u) / kAsked * weights.total)) ++k, ++times;
+    if (!(chosen.probability > 0)) continue;
+    add_chosen(v, {chosen.light, kAsked * chosen.probability / float(times)}, throughput, sampler, light);
   }
 }
 
@@ -151,24 +186,44 @@ void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sa
   const auto [i, probability] = selection_.pick(v.position, v.pick_normal(), next_fine(sampler));
   if (!(probability > 0)) return;
   const PunctualSample s = sample_punctual(lights_[i], v.position);
-  const Vec3f value = throughput * v.eval(s.to_light) * s.irradiance / probability;
+  const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / probability;
   if (!is_finite(value)) return;  // closer to the light than floats can tell
   float weight = 1;
-  const float cosine = dot(v.normal, s.to_light);
+  const float cosine = v.incident_cosine(s.to_light);
   if (s.distance <= subpath_reach_ && cosine > 0) {
     const float subpath_pdf = emission_.pdf(i, -s.to_light) * cosine / (s.distance * s.distance);
     weight = balance_heuristic(v.area_pdf * probability, subpath_pdf);
   }
-  light.add(v.index, i, (weight * visibility(v, s.to_light, s.distance, sampler)) * value);
+  light.add(v.index, i, (weight * light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler)) * value);
 }
 
-// A ray from a light ends at y, and y is connected with the vertex.
+// A ray from a light ends at y, and y is connected with the vertex. So is each clear surface that the ray passes.
 void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
   const float pick = sampler.next_1d();
   const PunctualEmission::Sample from = emission_.sample(pick, sampler.next_2d());
-  const auto hit = tracer_.intersect({from.origin, from.direction, 0, subpath_reach_, sampler.next_bits()});
-  if (!hit) return;
-  const Vec3f end = from.origin + hit->distance * from.direction;
+  Ray ray{from.origin, from.direction, 0, subpath_reach_, sampler.next_bits()};
+  Media media;
+  LightRay arriving{from, 0, {1, 1, 1}};
+  for (int surfaces = 0; surfaces < kMostStraight; ++surfaces) {
+    const auto hit = tracer_.intersect(ray);
+    if (!hit) return;
+    arriving.distance += hit->distance;
+    if (!clear_surfaces_) return connect(v, arriving, *hit, throughput, sampler, light);
+    const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
+    arriving.through *= media.transmittance(point, hit->distance);
+    connect(v, arriving, *hit, throughput, sampler, light);
+    arriving.through *= Bsdf(point).clear(-from.direction);
+    if (!(max_component(arriving.through) > 0)) return;
+    media.cross(point);
+    ray.origin = offset_point(point.position, -point.geometric_normal, point.rounding);
+    ray.far -= hit->distance;
+  }
+}
+
+void PathTracer::connect(const Vertex& v, const LightRay& arriving, const Hit& hit, Vec3f throughput, Sampler& sampler,
+                         PathLight& light) const {
+  const PunctualEmission::Sample& from = arriving.from;
+  const Vec3f end = from.origin + arriving.distance * from.direction;
   const float r2 = length_squared(end - v.position);
   if (!(r2 > 0)) return;
   const float distance = std::sqrt(r2);
@@ -177,24 +232,25 @@ void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& s
   if (!(max_component(scattered) > 0)) return;
 
   const Ray connection{v.position, to_end, 0, kInfinity, 0};
-  const SurfacePoint point = make_surface_point(tracer_.scene(), connection, *hit);
+  const SurfacePoint point = make_surface_point(tracer_.scene(), connection, hit);
   const Bsdf bsdf(point);
   const Vertex y{point.position, point.geometric_normal, point.rounding, -to_end, &bsdf, v.index + 1};
   // A ray from behind the triangle does not arrive, whatever the smooth surface sees.
-  const float cosine_light = -dot(y.normal, from.direction), cosine_vertex = dot(y.normal, -to_end);
-  const Vec3f reflected = y.eval(-from.direction) * from.intensity;
+  const float cosine_light = y.incident_cosine(-from.direction), cosine_vertex = dot(y.normal, -to_end);
+  const Vec3f reflected = y.eval(-from.direction, LightSource::kPunctualBlurred) * from.intensity;
   if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
 
   // Densities of y, per m², by this ray and by scattering at v followed by picking the same light.
-  const float d2 = hit->distance * hit->distance;
+  const float d2 = arriving.distance * arriving.distance;
   const float subpath_pdf = emission_.pdf(from.light, from.direction) * cosine_light / d2;
   const float scatter_pdf =
       v.pdf(to_end) * cosine_vertex / r2 * selection_.probability(from.light, y.position, y.pick_normal());
   const float weight = balance_heuristic(subpath_pdf, scatter_pdf);
   const Vec3f value = (weight * cosine_vertex / (r2 * d2 * subpath_pdf)) * scattered * reflected;
   if (!(max_component(value) > 0) || !is_finite(value)) return;
-  if (tracer_.occluded_between(v.ray_origin(), y.ray_end(distance), sampler.next_bits())) return;
-  light.add(v.index + 1, from.light, value);
+  Ray between = ray_between(v.ray_origin(to_end), y.ray_end(distance), sampler.next_bits());
+  between.clear = ClearSurfaces::kPassThin;
+  light.add(v.index + 1, from.light, arriving.through * light_along(between, v.media) * value);
 }
 
 void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
@@ -204,7 +260,8 @@ void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sample
   const Vec3f value = throughput * v.eval(s.to_light) * s.radiance / s.pdf;
   if (!(max_component(value) > 0)) return;
   const float weight = balance_heuristic(s.pdf, v.pdf(s.to_light));
-  light.add(v.index, emission_source(), (weight * visibility(v, s.to_light, s.distance, sampler)) * value);
+  light.add(v.index, emission_source(),
+            (weight * light_through(v, s.to_light, s.distance, ClearSurfaces::kPassThin, sampler)) * value);
 }
 
 void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
@@ -214,22 +271,28 @@ void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Sampler& sa
     const Vec3f value = throughput * v.eval(s.direction) * s.radiance / s.pdf;
     if (!(max_component(value) > 0)) continue;
     const float weight = balance_heuristic(s.pdf, v.pdf(s.direction));
-    light.add(v.index, environment.source, (weight * visibility(v, s.direction, kInfinity, sampler)) * value);
+    light.add(v.index, environment.source,
+              (weight * light_through(v, s.direction, kInfinity, ClearSurfaces::kPassThin, sampler)) * value);
   }
 }
 
 // What a scattered ray finds that meets nothing.
 void PathTracer::add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const {
+  if (ray.from_camera()) return add_seen_background(ray.direction, throughput, light);
   for (const Environment& environment : environments_) {
     const float weight = balance_heuristic(ray.pdf, environment.sampling.pdf(ray.direction));
     light.add(index - 1, environment.source, weight * throughput * environment.sampling.radiance(ray.direction));
   }
 }
 
-void PathTracer::add_background(Vec3f direction, PathLight& light) const {
+void PathTracer::add_seen_background(Vec3f direction, Vec3f throughput, PathLight& light) const {
   for (const Environment& environment : environments_) {
-    light.add(0, environment.source, environment.sampling.radiance(direction));
+    light.add(0, environment.source, throughput * environment.sampling.radiance(direction));
   }
+}
+
+void PathTracer::add_background(Vec3f direction, PathLight& light) const {
+  add_seen_background(direction, {1, 1, 1}, light);
 }
 
 void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
@@ -255,52 +318,105 @@ void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Sampler
   add_environments(v, throughput, sampler, light);
 }
 
+void PathTracer::ScatteredRay::go_straight(const SurfacePoint& through, float distance) {
+  origin = offset_point(through.position, -through.geometric_normal, through.rounding);
+  travelled += distance;
+  media.cross(through);
+}
+
+// What the ray finds, weighted against light samples at the vertex that it left.
+void PathTracer::add_emission(const SurfacePoint& point, const Hit& hit, const ScatteredRay& ray, int index,
+                              Vec3f throughput, PathLight& light) const {
+  if (!(max_component(point.emission) > 0)) return;
+  if (ray.from_camera()) return light.add(0, emission_source(), throughput * point.emission);
+  if (emitters_.empty()) return;
+  const float weight = balance_heuristic(ray.pdf, emitters_.pdf(hit, ray.position, ray.normal, point.position));
+  light.add(index - 1, emission_source(), weight * throughput * point.emission);
+}
+
+// Turns `ray` as the surface scatters it; false: nothing goes on. A ray that goes straight through keeps its density.
+bool PathTracer::scatter(const Vertex& vertex, const SurfacePoint& point, Sampler& sampler, ScatteredRay& ray,
+                         Vec3f& throughput) const {
+  const Vec2f u = sampler.next_2d();
+  const auto next = vertex.bsdf->sample(vertex.to_viewer, u, sampler.next_1d());
+  if (!next) return false;
+  throughput *= next->weight;
+  const Vec3f origin = vertex.ray_origin(next->direction);
+  if (next->straight) {
+    ray.go_straight(point, length(point.position - ray.origin));
+    return true;
+  }
+  if (vertex.transmits_to(next->direction)) ray.media.cross(point);
+  ray.origin = origin;
+  ray.position = vertex.position;
+  ray.normal = vertex.pick_normal();
+  ray.direction = next->direction;
+  ray.pdf = next->pdf;
+  ray.travelled = 0;
+  ray.rough = ray.rough || next->rough;
+  return true;
+}
+
 void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  for (;; ++index) {
-    const Ray ray{
-        scattered.origin, scattered.direction, 0, kInfinity, sampler.next_bits(), 0, scattered_cone(scattered.pdf)};
+  for (int straight = 0; straight < kMostStraight;) {
+    Ray ray{scattered.origin, scattered.direction, 0, kInfinity, sampler.next_bits()};
+    ray.cone_spread = scattered_cone(scattered.pdf);
+    ray.cone_width = ray.cone_spread * scattered.travelled;
+    ray.sees_unlit = scattered.from_camera();
     const auto hit = tracer_.intersect(ray);
     if (!hit) return add_missed(scattered, index, throughput, light);
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
-    if (!emitters_.empty() && max_component(point.emission) > 0) {
-      const float light_pdf = emitters_.pdf(*hit, scattered.position, scattered.normal, point.position);
-      const float weight = balance_heuristic(scattered.pdf, light_pdf);
-      light.add(index - 1, emission_source(), weight * throughput * point.emission);
-    }
-    if (index > bounces_) return;
+    if (solids_) throughput *= scattered.media.transmittance(point, hit->distance);
+    add_emission(point, *hit, scattered, index, throughput, light);
+    if (point.unlit || (index > bounces_ && !clear_surfaces_)) return;
     const Bsdf bsdf(point);
     const Vec3f to_viewer = -scattered.direction;
-    const float cosine = dot(point.geometric_normal, to_viewer);
-    const float area_pdf = scattered.pdf * cosine / (hit->distance * hit->distance);
-    const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, area_pdf,
-                        point.lift,     point.geometric_normal};
+    if (index > bounces_) {
+      throughput *= bsdf.straight(to_viewer);
+      if (!(max_component(throughput) > 0)) return;
+      scattered.go_straight(point, hit->distance);
+      ++straight;
+      continue;
+    }
+    const float cosine = dot(point.geometric_normal, to_viewer), distance = scattered.travelled + hit->distance;
+    const Vertex vertex{.position = point.position,
+                        .normal = point.geometric_normal,
+                        .rounding = point.rounding,
+                        .to_viewer = to_viewer,
+                        .bsdf = &bsdf,
+                        .index = index,
+                        .area_pdf = scattered.pdf * cosine / (distance * distance),
+                        .lift = point.lift,
+                        .triangle_normal = point.geometric_normal,
+                        .punctual = scattered.rough ? LightSource::kPunctualBlurred : LightSource::kPunctual,
+                        .media = solids_ ? &scattered.media : nullptr};
     add_lights(vertex, throughput, sampler, light);
-    if (index == bounces_ && !has_emission()) return;
-    const Vec2f u = sampler.next_2d();
-    const auto next = bsdf.sample(to_viewer, u, sampler.next_1d());
-    if (!next) return;
-    throughput *= next->weight;
-    if (index + 1 >= kRouletteVertex) {
+    if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
+    if (!scatter(vertex, point, sampler, scattered, throughput)) return;
+    const bool turned = scattered.travelled == 0;
+    if (turned && index == bounces_ && !has_emission()) return;
+    if (turned && index + 1 >= kRouletteVertex) {
       const float survival = std::min(kMostSurvival, max_component(throughput));
       if (!(sampler.next_1d() < survival)) return;
       throughput *= 1 / survival;
     }
-    scattered = {vertex.ray_origin(), next->direction, next->pdf, vertex.position, vertex.pick_normal()};
+    straight = turned ? 0 : straight + 1;
+    index += turned ? 1 : 0;
   }
 }
 
 void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int index, Vec3f throughput,
                                Sampler& sampler, PathLight& light) const {
+  if (point.unlit) return;
   const Bsdf bsdf(point);
   const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, 0,
                       point.lift,     point.geometric_normal};
   add_lights(vertex, throughput, sampler, light);
-  if (index == bounces_ && !has_emission()) return;
-  const Vec2f u = sampler.next_2d();
-  const auto next = bsdf.sample(to_viewer, u, sampler.next_1d());
-  if (!next) return;
-  trace({vertex.ray_origin(), next->direction, next->pdf, vertex.position, vertex.pick_normal()}, index + 1,
-        throughput * next->weight, sampler, light);
+  if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
+  ScatteredRay ray{
+      .origin = point.position + to_viewer, .direction = -to_viewer, .position = {}, .normal = {}, .media = {}};
+  if (!scatter(vertex, point, sampler, ray, throughput)) return;
+  trace(ray, ray.travelled == 0 ? index + 1 : index, throughput, sampler, light);
 }
 
 void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const {
@@ -331,8 +447,14 @@ void PathTracer::add_indirect_illumination(const Vertex& vertex, Sampler& sample
   if (!(local.z > 0)) return;
   const Vec3f direction = normalize(Frame3f(vertex.normal).world_from_local(local));
   // Illumination is the mean of incident radiance over cosine-weighted directions.
-  trace({vertex.ray_origin(), direction, local.z * kInvPi, vertex.position, vertex.pick_normal()}, 1, {1, 1, 1},
-        sampler, light);
+  trace({.origin = vertex.ray_origin(direction),
+         .direction = direction,
+         .pdf = local.z * kInvPi,
+         .position = vertex.position,
+         .normal = vertex.pick_normal(),
+         .rough = true,
+         .media = {}},
+        1, {1, 1, 1}, sampler, light);
 }
 
 bool has_blended_surfaces(const Scene& scene) {

@@ -7,6 +7,8 @@
 //   subpaths of two vertices).
 // Of a few punctual lights, vertex 0 asks all, and later vertices one. Of more, vertex 0 asks some, spread evenly over
 // what each would bring if nothing stood between, and later vertices one.
+// Clear surfaces (glass, see clear_surfaces.h) let scattered rays through by chance, and light samples in full: thin
+// ones all of them, boundaries of solids those of punctual lights.
 //
 // Source: Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997 (balance heuristic: eq. 9.8; ch. 10).
 
@@ -14,6 +16,7 @@
 
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
+#include "renderer/trace/clear_surfaces.h"
 #include "renderer/trace/environment_sampling.h"
 #include "renderer/trace/light_sampling.h"
 #include "renderer/trace/light_selection.h"
@@ -69,14 +72,30 @@ class PathTracer {
     std::size_t source;
     EnvironmentSampling sampling;
   };
-  // A ray that leaves a vertex.
+  // A ray that leaves a vertex, or goes on through a clear surface as it came.
   struct ScatteredRay {
     Vec3f origin, direction;
-    float pdf;               // of the direction, per steradian
-    Vec3f position, normal;  // of the vertex, as lights are picked for it
+    float pdf = kInfinity;   // of the direction, per steradian; infinite: a camera's
+    Vec3f position, normal;  // of the vertex that scattered it, as lights are picked for it
+    float travelled = 0;     // metres from there to origin
+    bool rough = false;      // light has been scattered widely on the way
+    Media media;             // at origin
+
+    bool from_camera() const { return pdf == kInfinity; }
+    void go_straight(const SurfacePoint& through, float distance);
+  };
+  // A light's ray as it arrives at a surface.
+  struct LightRay {
+    PunctualEmission::Sample from;
+    float distance = 0;  // metres
+    Vec3f through;       // what clear surfaces have left of it
   };
   void add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const;
   void trace(ScatteredRay ray, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void add_emission(const SurfacePoint& point, const Hit& hit, const ScatteredRay& ray, int index, Vec3f throughput,
+                    PathLight& light) const;
+  bool scatter(const Vertex& vertex, const SurfacePoint& point, Sampler& sampler, ScatteredRay& ray,
+               Vec3f& throughput) const;
   void add_lights(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_indirect_samples(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
@@ -86,10 +105,15 @@ class PathTracer {
                   PathLight& light) const;
   void add_one_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_light_subpath(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  void connect(const Vertex& vertex, const LightRay& arriving, const Hit& hit, Vec3f throughput, Sampler& sampler,
+               PathLight& light) const;
   void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_environments(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const;
-  float visibility(const Vertex& vertex, Vec3f to_light, float distance, Sampler& sampler) const;
+  void add_seen_background(Vec3f direction, Vec3f throughput, PathLight& light) const;
+  Vec3f light_through(const Vertex& vertex, Vec3f to_light, float distance, ClearSurfaces clear,
+                      Sampler& sampler) const;
+  Vec3f light_along(const Ray& ray, const Media* media) const;
 
   const RayTracer& tracer_;
   const Lights& lights_;
@@ -99,6 +123,7 @@ class PathTracer {
   EmissiveTriangles emitters_;
   std::vector<Environment> environments_;
   int bounces_;
+  bool clear_surfaces_, solids_;  // in the scene
 };
 
 // Whether any material is alpha-blended, so that shadows are a matter of chance.

@@ -14,6 +14,9 @@ namespace {
 struct RayContext {
   RTCIntersectContext embree;  // first: Embree hands this address to the filter
   std::uint32_t alpha_seed;
+  ClearSurfaces clear;
+  bool sees_unlit;
+  bool passed_clear = false;
 };
 
 struct GeometryUser {
@@ -21,22 +24,67 @@ struct GeometryUser {
   const Mesh* mesh;
 };
 
-// Alpha mask and blend: a hit that the alpha does not hold is passed through.
-void filter_alpha(const RTCFilterFunctionNArguments* arguments) {
-  if (arguments->valid[0] != -1) return;
+// A hit that may be one, as a filter is shown it.
+struct Candidate {
+  const Scene& scene;
+  const Mesh& mesh;
+  const Material& material;
+  std::uint32_t triangle;
+  float u, v;
+  std::uint32_t seed;  // of the ray and the triangle
+  float cosine;        // between the ray and the triangle's normal, either side
+};
+
+Candidate candidate(const RTCFilterFunctionNArguments* arguments) {
   const auto& user = *static_cast<const GeometryUser*>(arguments->geometryUserPtr);
-  const std::uint32_t triangle = RTCHitN_primID(arguments->hit, 1, 0);
-  const float u = RTCHitN_u(arguments->hit, 1, 0), v = RTCHitN_v(arguments->hit, 1, 0);
-  const float alpha = surface_alpha(*user.scene, *user.mesh, triangle, u, v);
-  const Material& material = user.scene->materials[user.mesh->material];
-  bool solid = alpha >= material.alpha_cutoff;
-  if (material.alpha_mode == AlphaMode::kBlend) {
-    const std::uint32_t seed = reinterpret_cast<const RayContext*>(arguments->context)->alpha_seed;
-    const std::uint32_t instance = RTCHitN_instID(arguments->hit, 1, 0, 0);
-    const std::uint32_t surface = hash_combine(RTCHitN_geomID(arguments->hit, 1, 0), instance);
-    solid = unit_float(hash_combine(hash_combine(seed, triangle), surface)) < alpha;
+  const auto& context = *reinterpret_cast<const RayContext*>(arguments->context);
+  RTCHitN* hit = arguments->hit;
+  const std::uint32_t triangle = RTCHitN_primID(hit, 1, 0);
+  const std::uint32_t surface = hash_combine(RTCHitN_geomID(hit, 1, 0), RTCHitN_instID(hit, 1, 0, 0));
+  const Vec3f normal{RTCHitN_Ng_x(hit, 1, 0), RTCHitN_Ng_y(hit, 1, 0), RTCHitN_Ng_z(hit, 1, 0)};
+  RTCRayN* ray = arguments->ray;
+  const Vec3f direction{RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)};
+  return {*user.scene,
+          *user.mesh,
+          user.scene->materials[user.mesh->material],
+          triangle,
+          RTCHitN_u(hit, 1, 0),
+          RTCHitN_v(hit, 1, 0),
+          hash_combine(hash_combine(context.alpha_seed, triangle), surface),
+          std::abs(dot(normal, direction)) / std::sqrt(length_squared(normal) * length_squared(direction))};
+}
+
+// Alpha mask and blend: a hit that the alpha does not hold is passed through.
+bool alpha_holds(const Candidate& c) {
+  if (c.material.alpha_mode == AlphaMode::kOpaque) return true;
+  const float alpha = surface_alpha(c.scene, c.mesh, c.triangle, c.u, c.v);
+  if (c.material.alpha_mode == AlphaMode::kBlend) return unit_float(c.seed) < alpha;
+  return alpha >= c.material.alpha_cutoff;
+}
+
+bool passes_clear(const Candidate& c, ClearSurfaces clear) {
+  if (clear == ClearSurfaces::kStop || !c.material.layers) return false;
+  if (clear == ClearSurfaces::kPassThin && c.material.layers->solid) return false;
+  if (!surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v)) return false;
+  if (clear != ClearSurfaces::kPassByChance) return true;
+  return unit_float(hash_combine(c.seed, 1)) < clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, c.cosine);
+}
+
+void filter_surface(const RTCFilterFunctionNArguments* arguments) {
+  if (arguments->valid[0] != -1) return;
+  auto& context = *reinterpret_cast<RayContext*>(arguments->context);
+  const Candidate c = candidate(arguments);
+  if (!alpha_holds(c) || (c.material.unlit && !context.sees_unlit)) {
+    arguments->valid[0] = 0;
+  } else if (passes_clear(c, context.clear)) {
+    context.passed_clear = true;
+    arguments->valid[0] = 0;
   }
-  if (!solid) arguments->valid[0] = 0;
+}
+
+bool needs_filter(const Material& material) {
+  const bool transmits = material.layers && material.layers->transmission > 0;
+  return material.alpha_mode != AlphaMode::kOpaque || material.unlit || transmits;
 }
 
 std::vector<int> instances_per_mesh(const Scene& scene) {
@@ -59,6 +107,8 @@ RayContext make_context(const Ray& ray, bool coherent) {
   rtcInitIntersectContext(&context.embree);
   if (coherent) context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   context.alpha_seed = ray.alpha_seed;
+  context.clear = ray.clear;
+  context.sees_unlit = ray.sees_unlit;
   return context;
 }
 
@@ -96,9 +146,9 @@ struct RayTracer::Embree {
     }
     std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
     rtcSetGeometryUserData(geometry, &users[user]);
-    if (users[user].scene->materials[mesh.material].alpha_mode != AlphaMode::kOpaque) {
-      rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
-      rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+    if (needs_filter(users[user].scene->materials[mesh.material])) {
+      rtcSetGeometryIntersectFilterFunction(geometry, filter_surface);
+      rtcSetGeometryOccludedFilterFunction(geometry, filter_surface);
     }
     rtcCommitGeometry(geometry);
     return geometry;
@@ -181,17 +231,23 @@ std::optional<Hit> RayTracer::intersect(const Ray& ray) const {
   return Hit{query.ray.tfar, query.hit.u, query.hit.v, instance, query.hit.primID, normal, instanced};
 }
 
-bool RayTracer::occluded(const Ray& ray) const {
+Passage RayTracer::passage(const Ray& ray) const {
   RayContext context = make_context(ray, true);
   RTCRay query = make_ray(ray);
   rtcOccluded1(embree_->root, &context.embree, &query);
-  return query.tfar < 0;
+  if (query.tfar < 0) return Passage::kBlocked;
+  return context.passed_clear ? Passage::kClear : Passage::kFree;
+}
+
+Ray ray_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) {
+  constexpr float kShort = 1e-5F;
+  return {from, to - from, 0, 1 - kShort, alpha_seed};
 }
 
 bool RayTracer::occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const {
-  // A little short of `to`: from afar, floats cannot tell it from the surface that it was moved off.
-  constexpr float kShort = 1e-5F;
-  return occluded({from, to - from, 0, 1 - kShort, alpha_seed});
+  Ray ray = ray_between(from, to, alpha_seed);
+  ray.clear = ClearSurfaces::kPassByChance;
+  return occluded(ray);
 }
 
 float surface_rounding(float largest_coordinate, float radius) {

@@ -9,6 +9,14 @@
 
 namespace chiaro::renderer {
 
+// Which clear surfaces (is_clear) a ray passes as if they were not there.
+enum class ClearSurfaces : std::uint8_t {
+  kStop,
+  kPassThin,
+  kPassAll,       // boundaries of solids too
+  kPassByChance,  // all, with the probability that is the luminance of what they let through: by alpha_seed
+};
+
 struct Ray {
   Vec3f origin;
   Vec3f direction;  // unit, unless near and far are meant in its length
@@ -17,6 +25,14 @@ struct Ray {
   // The cone that the ray stands for, for texture filtering: its width at the origin, metres, and by how much it grows
   // with each metre. Zero: textures are looked up in full.
   float cone_width = 0, cone_spread = 0;
+  ClearSurfaces clear = ClearSurfaces::kStop;
+  bool sees_unlit = false;  // of a camera; all others pass unlit surfaces
+};
+
+enum class Passage : std::uint8_t {
+  kFree,
+  kClear,  // there may be clear surfaces on the way, and nothing else
+  kBlocked,
 };
 
 struct Hit {
@@ -26,6 +42,10 @@ struct Hit {
   Vec3f geometric_normal;  // unit, world, on the side of the triangle's winding; not flipped towards the ray
   bool instanced = false;  // met in object space, and not among the world's own triangles
 };
+
+// A ray from `from` that ends a little short of `to`: from afar, floats cannot tell `to` from the surface that it was
+// moved off.
+Ray ray_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed);
 
 class RayTracer {
  public:
@@ -39,9 +59,11 @@ class RayTracer {
   const Box3f& bounds() const { return bounds_; }  // world; of the drawn triangles
 
   std::optional<Hit> intersect(const Ray& ray) const;
-  bool occluded(const Ray& ray) const;
+  bool occluded(const Ray& ray) const { return passage(ray) == Passage::kBlocked; }
+  Passage passage(const Ray& ray) const;
   // Whether anything stands between two points, both already moved off their surfaces. Where one of them is a light,
   // let it be `to`: rays miss the surface that they start from more surely than one that they come to from afar.
+  // Clear surfaces are passed by chance, as alpha-blended ones are.
   bool occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const;
 
  private:

@@ -19,7 +19,7 @@ struct RenderOptions {
   // Most of a sample's contribution by one light on one surface, cd/m². Bias for less noise: off unless asked for.
   float clamp_direct = kInfinity, clamp_indirect = kInfinity;
   bool box_filter = false;  // 1-pixel box instead of Blackman–Harris, 1.5 pixels radius
-  Lens lens;
+  Lens lens{};
   std::vector<std::string> layers;  // of frame_layers()
 };
 

@@ -26,7 +26,7 @@ SpecularAlbedo integrate(float cosine, float alpha) {
     if (wi.z <= 0) continue;
     // f cosθ / pdf without Fresnel: G₂ / G₁.
     const float weight = ggx::visibility(wo.z, wi.z, alpha) * 4 * wo.z * wi.z / ggx::masking(wo.z, alpha);
-    const float w = ggx::schlick_weight(dot(wo, h));
+    const float w = schlick_weight(dot(wo, h));
     sum.scale += weight * (1 - w) / kSamples;
     sum.bias += weight * w / kSamples;
   }

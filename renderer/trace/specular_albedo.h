@@ -8,6 +8,8 @@ namespace chiaro::renderer {
 struct SpecularAlbedo {
   float scale = 0, bias = 0;
   float at(float f0) const { return f0 * scale + bias; }
+  float at(float f0, float f90) const { return f0 * scale + f90 * bias; }
+  float loss() const { return 1 - scale - bias; }  // what a perfect reflector of this roughness loses
 };
 
 // cosine: of the viewer, 0 … 1; alpha: roughness². From a table made on first use; accurate to about 0.003.

@@ -1,5 +1,6 @@
 #include "renderer/trace/surface_point.h"
 
+#include "renderer/trace/fresnel.h"
 #include "renderer/trace/texture_lookup.h"
 
 namespace chiaro::renderer {
@@ -21,7 +22,12 @@ struct Locus {
   std::optional<Vec4f> sample(const TextureUse& use, bool srgb) const {
     if (use.texture < 0 || mesh.uv[use.uv_set].empty()) return std::nullopt;
     const Texture& texture = scene.textures[use.texture];
-    return look_up(texture, interpolate(mesh.uv[use.uv_set], triangle, u, v), srgb, mip_level_for(use, texture));
+    return look_up(texture, uv_of(use), srgb, mip_level_for(use, texture));
+  }
+
+  Vec2f uv_of(const TextureUse& use) const {
+    const Vec2f uv = interpolate(mesh.uv[use.uv_set], triangle, u, v);
+    return use.transformed ? use.transform(uv) : uv;
   }
 
   int mip_level_for(const TextureUse& use, const Texture& texture) const {
@@ -29,7 +35,8 @@ struct Locus {
     const auto& uv = mesh.uv[use.uv_set];
     const Vec2f a = uv[triangle[0]], b = uv[triangle[1]], c = uv[triangle[2]];
     const float area = 0.5F * std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
-    return mip_level_of(footprint * area * float(texture.width) * float(texture.height));
+    const float scaled = use.transformed ? area * use.transform.area_scale() : area;
+    return mip_level_of(footprint * scaled * float(texture.width) * float(texture.height));
   }
 };
 
@@ -54,6 +61,19 @@ Vec3f emission(const Locus& at, const Material& material) {
   return texel ? material.emission * Vec3f{texel->x, texel->y, texel->z} : material.emission;
 }
 
+struct MetallicRoughness {
+  float metallic, roughness;
+};
+
+MetallicRoughness metallic_roughness_at(const Locus& at, const Material& material) {
+  MetallicRoughness result{material.metallic, material.roughness};
+  if (const auto texel = at.sample(material.metallic_roughness_texture, false)) {
+    result.roughness *= texel->y;
+    result.metallic *= texel->z;
+  }
+  return result;
+}
+
 // The direction in which texture coordinate u grows, and its handedness; from the file, or from positions and uv.
 std::optional<Vec4f> tangent_at(const Locus& at, int uv_set) {
   if (!at.mesh.tangents.empty()) return interpolate(at.mesh.tangents, at.triangle, at.u, at.v);
@@ -70,19 +90,25 @@ std::optional<Vec4f> tangent_at(const Locus& at, int uv_set) {
   return Vec4f{d.x, d.y, d.z, det < 0 ? 1.0F : -1.0F};
 }
 
-// Normal maps, as glTF has them: +Y up in the texture, tangent space of the object's normal.
-Vec3f mapped_normal(const Locus& at, const Material& material, Vec3f object_normal) {
-  const auto texel = at.sample(material.normal_texture, false);
+struct NormalMap {
+  const TextureUse& use;
+  float scale;
+};
+
+// Normal maps, as glTF has them: +Y up in the texture, tangent space of the object's normal. A texture transform does
+// not turn the tangents.
+Vec3f mapped_normal(const Locus& at, const NormalMap& map, Vec3f object_normal) {
+  const auto texel = at.sample(map.use, false);
   if (!texel) return object_normal;
-  const auto tangent4 = tangent_at(at, material.normal_texture.uv_set);
+  const auto tangent4 = tangent_at(at, map.use.uv_set);
   if (!tangent4) return object_normal;
   Vec3f tangent{tangent4->x, tangent4->y, tangent4->z};
   tangent = tangent - dot(tangent, object_normal) * object_normal;
   if (!(length_squared(tangent) > 0)) return object_normal;
   tangent = normalize(tangent);
   const Vec3f bitangent = tangent4->w * cross(object_normal, tangent);
-  const Vec3f n = (material.normal_scale * (2 * texel->x - 1)) * tangent +
-                  (material.normal_scale * (2 * texel->y - 1)) * bitangent + (2 * texel->z - 1) * object_normal;
+  const Vec3f n = (map.scale * (2 * texel->x - 1)) * tangent + (map.scale * (2 * texel->y - 1)) * bitangent +
+                  (2 * texel->z - 1) * object_normal;
   return length_squared(n) > 0 ? normalize(n) : object_normal;
 }
 
@@ -109,16 +135,47 @@ struct ShadingNormals {
   Vec3f mapped;  // with the normal map
 };
 
-ShadingNormals shading_normals(const Locus& at, const Material& material, const Mat4f& world_from_object,
-                               const Hit& hit) {
+ShadingNormals shading_normals(const Locus& at, const NormalMap& map, const Mat4f& world_from_object, const Hit& hit) {
   const Vec3f n = interpolate(at.mesh.normals, at.triangle, at.u, at.v);
   if (!(length_squared(n) > 0)) return {hit.geometric_normal, hit.geometric_normal};
   const Vec3f object_normal = normalize(n);
   Vec3f smooth = transform_normal(world_from_object, object_normal);
   if (!(length_squared(smooth) > 0)) smooth = hit.geometric_normal;
-  if (material.normal_texture.texture < 0) return {smooth, smooth};
-  const Vec3f mapped = transform_normal(world_from_object, mapped_normal(at, material, object_normal));
+  if (map.use.texture < 0) return {smooth, smooth};
+  const Vec3f mapped = transform_normal(world_from_object, mapped_normal(at, map, object_normal));
   return {smooth, length_squared(mapped) > 0 ? mapped : smooth};
+}
+
+float scaled(const Locus& at, float factor, const TextureUse& use, float Vec4f::*channel) {
+  if (!(factor > 0)) return factor;
+  const auto texel = at.sample(use, false);
+  return texel ? factor * ((*texel).*channel) : factor;
+}
+
+Vec3f scaled(const Locus& at, Vec3f factor, const TextureUse& use) {
+  if (!(max_component(factor) > 0)) return factor;
+  const auto texel = at.sample(use, true);
+  return texel ? factor * Vec3f{texel->x, texel->y, texel->z} : factor;
+}
+
+float transmission_at(const Locus& at, const MaterialLayers& layers) {
+  return scaled(at, layers.transmission, layers.transmission_texture, &Vec4f::x);
+}
+
+// All but the clearcoat's normal.
+SurfaceLayers layers_at(const Locus& at, const MaterialLayers& m) {
+  SurfaceLayers layers;
+  layers.ior = m.ior;
+  layers.specular = scaled(at, m.specular, m.specular_texture, &Vec4f::w);
+  layers.specular_color = scaled(at, m.specular_color, m.specular_color_texture);
+  layers.transmission = transmission_at(at, m);
+  layers.solid = m.solid;
+  layers.absorption = m.absorption;
+  layers.clearcoat = scaled(at, m.clearcoat, m.clearcoat_texture, &Vec4f::x);
+  layers.clearcoat_roughness = scaled(at, m.clearcoat_roughness, m.clearcoat_roughness_texture, &Vec4f::y);
+  layers.sheen_color = scaled(at, m.sheen_color, m.sheen_color_texture);
+  layers.sheen_roughness = scaled(at, m.sheen_roughness, m.sheen_roughness_texture, &Vec4f::w);
+  return layers;
 }
 
 using Corners = std::array<Vec3f, 3>;
@@ -191,10 +248,28 @@ float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle
   float alpha = material.alpha;
   const TextureUse& use = material.base_color_texture;
   if (use.texture >= 0 && !mesh.uv[use.uv_set].empty()) {
-    alpha *= look_up_alpha(scene.textures[use.texture], interpolate(mesh.uv[use.uv_set], at.triangle, u, v));
+    alpha *= look_up_alpha(scene.textures[use.texture], at.uv_of(use));
   }
   if (!mesh.colors.empty()) alpha *= interpolate(mesh.colors, at.triangle, u, v).w;
   return alpha;
+}
+
+bool surface_is_clear(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const Material& material = scene.materials[mesh.material];
+  if (!material.layers || !(material.layers->transmission > 0)) return false;
+  const Locus at = locus_at(scene, mesh, triangle, u, v);
+  const MetallicRoughness mr = metallic_roughness_at(at, material);
+  return mr.metallic < 1 && is_clear(mr.roughness) && transmission_at(at, *material.layers) > 0;
+}
+
+float clear_luminance(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, Vec2f uv, float cosine) {
+  const Material& material = scene.materials[mesh.material];
+  const Locus at = locus_at(scene, mesh, triangle, uv.x, uv.y);
+  const MaterialLayers& layers = *material.layers;
+  const float f0 = normal_reflectance(layers.ior) * luminance(layers.specular_color);
+  const float reflected = layers.specular * std::min(1.0F, f0 + (1 - f0) * schlick_weight(cosine));
+  const float dielectric = 1 - metallic_roughness_at(at, material).metallic;
+  return dielectric * transmission_at(at, layers) * (1 - reflected) * luminance(base_color(at, material));
 }
 
 Vec3f surface_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
@@ -216,7 +291,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;
   point.geometric_normal = (point.front ? 1.0F : -1.0F) * hit.geometric_normal;
   const Vec3f to_viewer = -normalize(ray.direction);
-  const ShadingNormals normals = shading_normals(at, material, instance.world_from_object, hit);
+  const ShadingNormals normals =
+      shading_normals(at, {material.normal_texture, material.normal_scale}, instance.world_from_object, hit);
   // The side is the geometry's to decide: an interpolated normal may lean over the horizon of its triangle.
   const auto on_side = [&](Vec3f n) { return dot(n, point.geometric_normal) < 0 ? -n : n; };
   point.smooth_normal = on_side(normals.smooth);
@@ -227,13 +303,18 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   }
   point.base_color = base_color(at, material);
   point.lambert = material.lambert;
-  point.metallic = material.metallic;
-  point.roughness = material.roughness;
-  if (const auto texel = at.sample(material.metallic_roughness_texture, false)) {
-    point.roughness *= texel->y;
-    point.metallic *= texel->z;
+  const MetallicRoughness mr = metallic_roughness_at(at, material);
+  point.metallic = mr.metallic;
+  point.roughness = mr.roughness;
+  point.unlit = material.unlit;
+  point.emission = material.unlit ? point.base_color : emission(at, material);
+  point.material = mesh.material;
+  if (material.layers) {
+    point.layers = layers_at(at, *material.layers);
+    const NormalMap coat{material.layers->clearcoat_normal_texture, material.layers->clearcoat_normal_scale};
+    const Vec3f normal = shading_normals(at, coat, instance.world_from_object, hit).mapped;
+    point.layers->clearcoat_normal = bend_for_reflection(on_side(normal), to_viewer, point.geometric_normal);
   }
-  point.emission = emission(at, material);
   return point;
 }
 

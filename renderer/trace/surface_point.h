@@ -1,9 +1,25 @@
 #pragma once
 // What a ray hit: position, normals, and the material's values there.
 
+#include <optional>
+
 #include "renderer/trace/ray_tracer.h"
 
 namespace chiaro::renderer {
+
+// MaterialLayers at a point.
+struct SurfaceLayers {
+  float ior = 1.5F;
+  float specular = 1;
+  Vec3f specular_color{1, 1, 1};
+  float transmission = 0;
+  bool solid = false;
+  Vec3f absorption;  // 1 / metres, behind the surface
+  float clearcoat = 0, clearcoat_roughness = 0;
+  Vec3f clearcoat_normal;  // unit, never facing away from the ray
+  Vec3f sheen_color;
+  float sheen_roughness = 0;
+};
 
 struct SurfacePoint {
   Vec3f position;
@@ -16,15 +32,28 @@ struct SurfacePoint {
   Vec3f lift;
   Vec3f base_color;  // linear
   float metallic = 0, roughness = 1;
-  Vec3f emission;  // cd/m², from both sides
+  Vec3f emission;  // cd/m², from both sides; of an unlit surface, what a camera sees
   bool lambert = false;
   bool front = true;  // the ray came from the front face
+  bool unlit = false;
+  int material = 0;                     // index into Scene::materials
+  std::optional<SurfaceLayers> layers;  // absent: Lambert or plain metallic-roughness
 };
 
 SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 
 // Alpha of a mesh at barycentric u, v of a triangle: factor × texture × vertex colour.
 float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+// A transmission of at most this roughness counts as clear: thin sheets let light straight through, and the shadow rays
+// of punctual lights pass both sheets and solids.
+inline bool is_clear(float roughness) { return roughness <= 0.1F; }
+
+// Whether a mesh transmits clearly at barycentric u, v of a triangle.
+bool surface_is_clear(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+// Luminance of what a clear surface lets through there, about; `cosine`: of the ray with the triangle's normal.
+float clear_luminance(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, Vec2f uv, float cosine);
 
 // Emission of a mesh at barycentric u, v of a triangle, cd/m².
 Vec3f surface_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);

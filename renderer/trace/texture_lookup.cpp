@@ -34,6 +34,13 @@ Neighbours neighbours(float uv, int size, Wrap mode) {
   return n;
 }
 
+// At a value, 0 to 255, between two that are stored.
+float decode_between(const DecodeTable& table, float value) {
+  const int below = std::clamp(int(value), 0, 254);
+  const float t = value - float(below);
+  return (1 - t) * table[below] + t * table[below + 1];
+}
+
 bool is_finite(Vec2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }
 
 }  // namespace
@@ -56,6 +63,10 @@ Vec4f look_up(const Texture& texture, Vec2f uv, bool srgb, int level) {
   const auto channel = [&](int k, const DecodeTable& table) {
     return wa * table[a[k]] + wb * table[b[k]] + wc * table[c[k]] + wd * table[d[k]];
   };
+  if (srgb && texture.filtered_as_stored) {
+    const auto decoded = [&](int k) { return decode_between(kSrgb, 255 * channel(k, kLinear)); };
+    return {decoded(0), decoded(1), decoded(2), channel(3, alpha)};
+  }
   return {channel(0, color), channel(1, color), channel(2, color), channel(3, alpha)};
 }
 

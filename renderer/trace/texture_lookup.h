@@ -6,7 +6,8 @@
 namespace chiaro::renderer {
 
 // RGBA at uv, 0 to 1, bilinear in the stored values' linear light: colour textures are decoded from sRGB before
-// filtering where `srgb` is set (alpha never is). level: of the mip map, if there is one.
+// filtering where `srgb` is set (alpha never is), unless the texture is filtered as stored. level: of the mip map, if
+// there is one.
 Vec4f look_up(const Texture& texture, Vec2f uv, bool srgb, int level = 0);
 
 // Alpha of the full texture.

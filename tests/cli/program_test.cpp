@@ -53,6 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Arguments{"bake", "a.glb", "-o", "a.exr", "--materials", "gold"},
                     Arguments{"bake", "a.glb", "-o", "a.exr", "--on", "r.glb", "--max-edge", "1"},
                     Arguments{"receivers", "a.glb", "-o", "r.glb", "--max-edge", "0"},
+                    Arguments{"receivers", "a.glb", "-o", "r.glb", "--variant", ""},
                     Arguments{"solve", "a.glb", "-o", "l.glb"},
                     Arguments{"solve", "a.glb", "--target", "t.glb", "-o", "l.json"},
                     Arguments{"solve", "a.glb", "--target", "t.glb", "-o", "l.glb", "--method", "guess"},

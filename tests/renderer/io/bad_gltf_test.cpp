@@ -39,8 +39,8 @@ using J = ordered_json;
 const BadCase kBadCases[] = {
     {"NoAsset", [](GltfBuilder& g) { g.root.erase("asset"); }, "asset: is missing"},
     {"Version1", [](GltfBuilder& g) { g.root["asset"]["version"] = "1.0"; }, "asset.version"},
-    {"RequiredExtension", [](GltfBuilder& g) { g.root["extensionsRequired"] = {"KHR_texture_transform"}; },
-     "KHR_texture_transform"},
+    {"RequiredExtension", [](GltfBuilder& g) { g.root["extensionsRequired"] = {"KHR_materials_dispersion"}; },
+     "KHR_materials_dispersion"},
     {"MeshOutOfRange", [](GltfBuilder& g) { g.root["nodes"][0]["mesh"] = 1; }, "nodes[0].mesh: 1 is out of range"},
     {"NegativeIndex", [](GltfBuilder& g) { g.root["nodes"][0]["mesh"] = -1; }, "nodes[0].mesh"},
     {"StringIndex", [](GltfBuilder& g) { g.root["nodes"][0]["mesh"] = "0"; }, "nodes[0].mesh"},

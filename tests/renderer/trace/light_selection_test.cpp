@@ -87,10 +87,10 @@ TEST(LightSelection, WeighsByTheIrradiance) {
     const Vec2f xy = sampler.next_2d();
     const Vec3f point{6 * xy.x, 6 * xy.y, 3}, normal = uniform_direction(sampler.next_2d());
     selection.weigh(point, normal, weights);
-    for (std::size_t i = 0; i < selection.order().size(); ++i) {
-      const PunctualSample s = sample_punctual(lights[selection.order()[i]], point);
+    for (std::size_t i = 0; i < selection.lights_in_order().size(); ++i) {
+      const PunctualSample s = sample_punctual(lights[selection.lights_in_order()[i]], point);
       const float expected = std::max(0.0F, dot(normal, s.to_light)) * max_component(s.irradiance);
-      EXPECT_NEAR(weights[i], expected, 1e-3F * expected + 1e-6F) << k << " " << i;
+      EXPECT_NEAR(weights.of_light[i], expected, 1e-3F * expected + 1e-6F) << k << " " << i;
     }
   }
 }

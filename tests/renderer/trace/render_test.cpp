@@ -331,7 +331,9 @@ TEST(Render, MattesCoverWhatIsHit) {
       float coverage = 0;
       for (int i = 0; i < kMatteLevels; ++i) {
         coverage += ranks[2 * i + 1];
-        if (i > 0) EXPECT_LE(ranks[2 * i + 1], ranks[2 * i - 1]);
+        if (i > 0) {
+          EXPECT_LE(ranks[2 * i + 1], ranks[2 * i - 1]);
+        }
         ball = ball || std::bit_cast<std::uint32_t>(ranks[2 * i]) == matte_id("ball");
       }
       EXPECT_NEAR(coverage, frame.image.at(x, y)[3], 1e-5F);

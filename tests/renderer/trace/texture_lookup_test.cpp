@@ -39,6 +39,20 @@ TEST(TextureLookup, IsBilinear) {
   EXPECT_NEAR(look_up(texture, {0.25F, 0.75F}, false).x, 0.4F, 1e-6F);
 }
 
+TEST(TextureLookup, BlendsColoursInLinearLightUnlessFilteredAsStored) {
+  Texture texture{"", 2, 1, {}};
+  for (const std::uint8_t v : {0, 200}) texture.rgba.insert(texture.rgba.end(), {v, v, v, v});
+  const auto decoded = [](double v) { return float(std::pow((v / 255 + 0.055) / 1.055, 2.4)); };
+  EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, true).x, decoded(200) / 2, 1e-6F);
+  texture.filtered_as_stored = true;
+  EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, true).x, decoded(100), 1e-6F);
+  EXPECT_NEAR(look_up(texture, {0.5F - 0.125F / 2, 0.5F}, true).x, decoded(75), 1e-6F);
+  EXPECT_NEAR(look_up(texture, {0.5F - 0.125F / 2.02F, 0.5F}, true).x, decoded(200 * (0.5 - 0.25 / 2.02)), 1e-5F);
+  EXPECT_NEAR(look_up(texture, {0.75F, 0.5F}, true).x, decoded(200), 1e-6F);
+  EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, true).w, 100 / 255.0F, 1e-6F);
+  EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, false).x, 100 / 255.0F, 1e-6F);
+}
+
 TEST(TextureLookup, WrapsAsAsked) {
   // The texel that the coordinate u - 1/4 of the first one lies on: the last, the first mirrored, the first.
   EXPECT_NEAR(red(row(Wrap::kRepeat), -0.125F), 1, 1e-6F);

@@ -1,4 +1,5 @@
-// Closed forms of light transport. Where a value is statistical, the bound is stated in standard errors and the seed is fixed.
+// Closed forms of light transport. Where a value is statistical, the bound is stated in standard errors and the seed is
+// fixed.
 
 #include "renderer/trace/trace_illumination.h"
 
@@ -55,7 +56,8 @@ TEST(TraceIllumination, FurnaceGivesEmissionOverOneMinusAlbedo) {
     Scene scene;
     add_mesh(scene, test::sphere({0, 0, 0}, 2, 32, true), lambert({albedo, albedo, albedo}, {1, 1, 1}), "furnace");
     const RayTracer tracer(scene);
-    const std::vector<SurfaceSample> points{{{0.3F, 0.2F, 0.1F}, {0, 1, 0}}, {{-1, 0.4F, 0.6F}, normalize(Vec3f{1, 1, 0})}};
+    const std::vector<SurfaceSample> points{{{0.3F, 0.2F, 0.1F}, {0, 1, 0}},
+                                            {{-1, 0.4F, 0.6F}, normalize(Vec3f{1, 1, 0})}};
     const auto result = trace_illumination(tracer, points, {}, {.samples = 4096, .seed = 3});
     for (std::size_t i = 0; i < points.size(); ++i) {
       // Six standard errors of 3 degrees of freedom, p < 1 %; and half a percent for roulette's rare long paths.
@@ -106,7 +108,8 @@ TEST(TraceIllumination, ClosedBoxConservesEnergy) {
   }
   const auto result = trace_illumination(tracer, points, lights, {.samples = 16, .seed = 5});
   double absorbed = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) absorbed += (1 - double(albedo)) * double(kPi * result.value[i].x) * areas[i];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    absorbed += (1 - double(albedo)) * double(kPi * result.value[i].x) * areas[i];
   EXPECT_NEAR(absorbed / (4 * double(kPi) * 5), 1, 0.01);
 }
 
@@ -117,7 +120,8 @@ TEST(TraceIllumination, EmissivePanelMatchesItsFormFactor) {
   const RayTracer tracer(scene);
   const std::vector<SurfaceSample> points{{{0, 0, 0}, {0, 1, 0}}};
   const double a = 0.5;  // half side over distance
-  const double form_factor = 4 * (2 / (2 * double(kPi))) * (a / std::sqrt(1 + a * a)) * std::atan(a / std::sqrt(1 + a * a));
+  const double form_factor =
+      4 * (2 / (2 * double(kPi))) * (a / std::sqrt(1 + a * a)) * std::atan(a / std::sqrt(1 + a * a));
   const auto result = trace_illumination(tracer, points, {}, {.samples = 4096, .bounces = 0, .seed = 2});
   EXPECT_NEAR(result.value[0].x, 3 * form_factor, 6 * double(result.standard_error[0].x) + 1e-4);
   EXPECT_NEAR(result.value[0].z, 1 * form_factor, 6 * double(result.standard_error[0].z) + 1e-4);
@@ -133,11 +137,12 @@ TEST(TraceIllumination, ErrorShrinksAndCoversTheTruth) {
   const auto coarse = trace_illumination(tracer, points, lights, {.samples = 64, .seed = 200});
   double chi_squared = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double z = double(coarse.value[i].x - reference.value[i].x) / std::max(1e-9, double(coarse.standard_error[i].x));
+    const double z =
+        double(coarse.value[i].x - reference.value[i].x) / std::max(1e-9, double(coarse.standard_error[i].x));
     chi_squared += std::min(z * z, 25.0);
   }
-  // z follows Student's t of 3 degrees of freedom, cut at 5: E z² = 2.1. Far from 100 × 2.1 only if the stated errors are
-  // wrong.
+  // z follows Student's t of 3 degrees of freedom, cut at 5: E z² = 2.1. Far from 100 × 2.1 only if the stated errors
+  // are wrong.
   EXPECT_GT(chi_squared, 80);
   EXPECT_LT(chi_squared, 450);
 }

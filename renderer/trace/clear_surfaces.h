@@ -1,0 +1,44 @@
+#pragma once
+// Light that passes clear surfaces (is_clear) without being turned: glass panes, bulbs, bottles. Through thin sheets
+// this is what the material says. Through solids it is how shadow rays of punctual lights take them, since scattered
+// rays, which are refracted, never meet a point: as if the boundary did not refract, with its reflection and what the
+// inside absorbs.
+
+#include <array>
+
+#include "renderer/trace/ray_tracer.h"
+#include "renderer/trace/surface_point.h"
+
+namespace chiaro::renderer {
+
+// The solids that a point is inside of, as far as its path knows.
+class Media {
+ public:
+  // Through the surface, by way of its boundary: into a solid from its front, out of it from its back.
+  void cross(const SurfacePoint& surface);
+  // What arrives over the last `distance` metres to `surface`. Behind the back of a boundary is its solid, whether the
+  // path knows of it or not: a camera may stand inside.
+  Vec3f transmittance(const SurfacePoint& surface, float distance) const;
+  // Of the innermost solid.
+  Vec3f transmittance(float distance) const;
+  bool empty() const { return count_ == 0; }
+
+ private:
+  struct Solid {
+    int material = 0;
+    Vec3f absorption;
+  };
+  static constexpr int kMost = 4;  // nested in each other; more do not absorb
+  std::array<Solid, kMost> inside_;
+  int count_ = 0;
+};
+
+// Of the light that comes along `ray`, which nothing but surfaces that its `clear` passes stand in the way of: that
+// part which they, and the solids among them, let through. `media`: where the ray starts. distance: to its end, metres;
+// infinite where the ray is.
+Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& media);
+
+bool has_clear_surfaces(const Scene& scene);
+bool has_solids(const Scene& scene);
+
+}  // namespace chiaro::renderer
