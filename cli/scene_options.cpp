@@ -1,5 +1,7 @@
 #include "cli/scene_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "cli/add_options.h"
 
 namespace chiaro::cli {
@@ -7,6 +9,15 @@ namespace chiaro::cli {
 void add_scene_options(CLI::App& command, renderer::LoadOptions& options) {
   add_text(command, {"--variant", "NAME", "The scene's materials in this variant (KHR_materials_variants)"},
            options.variant);
+  add_text(command,
+           {"--animation", "NAME|INDEX",
+            "The animation that --animation-time is of (default: all of the scene, if no two move the same thing; else "
+            "the first)"},
+           options.animation.animation);
+  add_number(command,
+             {"--animation-time", "SECONDS", "The scene as it is then (default: as its nodes stand, nothing animated)"},
+             options.animation.seconds);
+  command.get_option("--animation")->needs("--animation-time");
 }
 
 }  // namespace chiaro::cli

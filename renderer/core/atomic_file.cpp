@@ -66,8 +66,13 @@ std::string read_file(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw Error({path.string(), "", "no such file", ""});
   if (std::filesystem::is_directory(path)) throw Error({path.string(), "", "is a folder", "a file"});
   std::ifstream stream(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.good() && !stream.eof()) throw Error({path.string(), "", "cannot be read", ""});
+  std::error_code no_size;  // as pipes have none
+  const std::uintmax_t size = std::filesystem::file_size(path, no_size);
+  std::string bytes(no_size ? 0 : std::size_t(size), '\0');
+  stream.read(bytes.data(), std::streamsize(bytes.size()));
+  bytes.resize(std::size_t(stream.gcount()));
+  if (stream.good()) bytes.append(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  if (stream.bad() || !stream.is_open()) throw Error({path.string(), "", "cannot be read", ""});
   return bytes;
 }
 

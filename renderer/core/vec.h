@@ -86,6 +86,10 @@ struct Mat4f {
   Vec3f column(int c) const { return {m[4 * c], m[4 * c + 1], m[4 * c + 2]}; }
 };
 
+inline bool is_finite(const Mat4f& a) {
+  return std::all_of(a.m.begin(), a.m.end(), [](float v) { return std::isfinite(v); });
+}
+
 Mat4f operator*(const Mat4f& a, const Mat4f& b);
 Vec3f transform_point(const Mat4f& target_from_source, Vec3f p);
 Vec3f transform_direction(const Mat4f& target_from_source, Vec3f d);

@@ -8,11 +8,13 @@
 #include "renderer/core/error.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
+#include "renderer/image/memory_file.h"
 
 namespace chiaro::renderer {
 namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
+constexpr const char* kAvifName = "texture.avif";
 
 // The name of a file of the format that the bytes begin like; empty: none that textures come in.
 std::string file_name_for(std::string_view encoded) {
@@ -22,6 +24,7 @@ std::string file_name_for(std::string_view encoded) {
   if (begins("\x89PNG\r\n\x1a\n")) return "texture.png";
   if (begins("\xff\xd8\xff")) return "texture.jpg";
   if (begins("RIFF") && begins("WEBP", 8)) return "texture.webp";
+  if (begins("ftypavif", 4) || begins("ftypavis", 4)) return kAvifName;
   if (begins("GIF8")) return "texture.gif";
   if (begins("BM")) return "texture.bmp";
   if (begins("DDS ")) return "texture.dds";
@@ -29,7 +32,7 @@ std::string file_name_for(std::string_view encoded) {
 }
 
 [[noreturn]] void fail(const std::string& label, const std::string& problem) {
-  throw Error({label, "", problem, "a PNG, JPEG or WebP image"});
+  throw Error({label, "", problem, "a PNG, JPEG, WebP or AVIF image"});
 }
 
 std::string reason(const std::string& text) {
@@ -63,28 +66,44 @@ std::vector<std::uint8_t> rgba_of(const std::vector<std::uint8_t>& texels, int c
   return rgba;
 }
 
+Texture decoded_texture(OIIO::ImageInput& input, const std::string& label) {
+  std::vector<std::uint8_t> texels = read_texels(input, label);
+  const OIIO::ImageSpec& spec = input.spec();
+  Texture texture;
+  texture.name = label;
+  texture.width = spec.width;
+  texture.height = spec.height;
+  texture.rgba = spec.nchannels == 4 ? std::move(texels) : rgba_of(texels, spec.nchannels);
+  return texture;
+}
+
+// Its reader wants a file.
+Texture decode_avif(std::string_view encoded, const OIIO::ImageSpec& config, const std::string& label) {
+  const MemoryFile file(encoded);
+  const auto input = OIIO::ImageInput::create("heif");
+  OIIO::ImageSpec spec;
+  if (!input) fail(label, "cannot be decoded: this OpenImageIO has no AVIF");
+  if (!input->open(file.path(), spec, config))
+    fail(label, fmt::format("cannot be decoded: {}", reason(input->geterror())));
+  return decoded_texture(*input, label);
+}
+
 }  // namespace
 
 Texture decode_texture(std::string_view encoded, const std::string& label) {
   const std::string name = file_name_for(encoded);
   if (name.empty()) fail(label, "is in a format that is not read here");
   if (const auto damage = find_damage(encoded)) fail(label, *damage);
-  OIIO::Filesystem::IOMemReader reader(const_cast<char*>(encoded.data()), encoded.size());
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
+  if (name == kAvifName) return decode_avif(encoded, config, label);
+  OIIO::Filesystem::IOMemReader reader(const_cast<char*>(encoded.data()), encoded.size());
   // Some readers take the proxy from their configuration only.
   OIIO::Filesystem::IOProxy* proxy = &reader;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::open(name, &config, proxy);
   if (!input) fail(label, fmt::format("cannot be decoded: {}", reason(OIIO::geterror())));
-  const std::vector<std::uint8_t> texels = read_texels(*input, label);
-  const OIIO::ImageSpec& spec = input->spec();
-  Texture texture;
-  texture.name = label;
-  texture.width = spec.width;
-  texture.height = spec.height;
-  texture.rgba = spec.nchannels == 4 ? texels : rgba_of(texels, spec.nchannels);
-  return texture;
+  return decoded_texture(*input, label);
 }
 
 }  // namespace chiaro::renderer

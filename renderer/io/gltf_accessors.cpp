@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include "renderer/core/error.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -36,7 +38,7 @@ std::size_t component_size(int component_type) {
   }
 }
 
-int component_count(int type) {
+int component_count(int type, int component_type) {
   switch (type) {
     case TINYGLTF_TYPE_SCALAR:
       return 1;
@@ -46,8 +48,10 @@ int component_count(int type) {
       return 3;
     case TINYGLTF_TYPE_VEC4:
       return 4;
+    case TINYGLTF_TYPE_MAT4:
+      return component_type == TINYGLTF_COMPONENT_TYPE_FLOAT ? 16 : 0;
     default:
-      return 0;  // matrices are not read from accessors here
+      return 0;  // other matrices are not used
   }
 }
 
@@ -90,14 +94,20 @@ Elements elements_of(const GltfDocument& document, int index) {
   const std::string place = place_of(index);
   Elements elements;
   elements.count = accessor.count;
-  elements.components = component_count(accessor.type);
+  elements.components = component_count(accessor.type, accessor.componentType);
   elements.component_type = accessor.componentType;
   elements.normalized = accessor.normalized;
-  if (elements.components == 0) fail(document, place + ".type", "is a matrix", "SCALAR, VEC2, VEC3 or VEC4");
+  if (elements.components == 0)
+    fail(document, place + ".type", "is a matrix that is not used", "SCALAR, VEC2, VEC3, VEC4, or MAT4 of floats");
   if (component_size(accessor.componentType) == 0) {
     fail(document, place + ".componentType", fmt::format("is {}", accessor.componentType), "5120 to 5126");
   }
-  if (accessor.bufferView >= 0) {
+  const auto decoded = document.decoded_accessors.find(index);
+  if (decoded != document.decoded_accessors.end()) {
+    elements.stride = component_size(elements.component_type) * elements.components;
+    elements.first = decoded->second.data();
+    CHIARO_CHECK(decoded->second.size() == elements.stride * elements.count);
+  } else if (accessor.bufferView >= 0) {
     elements.stride = document.model->bufferViews[accessor.bufferView].byteStride;
     locate(document, elements, accessor.bufferView, accessor.byteOffset, place);
   } else {
@@ -238,7 +248,7 @@ std::size_t accessor_count(const GltfDocument& document, int accessor) {
 }
 
 int accessor_components(const GltfDocument& document, int accessor) {
-  return component_count(document.model->accessors[accessor].type);
+  return component_count(document.model->accessors[accessor].type, document.model->accessors[accessor].componentType);
 }
 
 bool accessor_is_float(const GltfDocument& document, int accessor) {

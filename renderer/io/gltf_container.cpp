@@ -38,19 +38,29 @@ std::string_view glb_body(std::string_view bytes, const std::string& file) {
   return bytes.substr(kHeaderSize, length - kHeaderSize);
 }
 
-void take_chunk(GltfContainer& container, std::uint32_t type, std::string_view bytes) {
+void take_chunk(GltfContainer& container, std::uint32_t type, std::string_view bytes,
+                std::optional<std::string_view>& binary) {
   if (type == kJsonChunk && container.json.empty()) {
     container.json = bytes;
-  } else if (type == kBinaryChunk && !container.binary) {
-    container.binary = bytes;
+  } else if (type == kBinaryChunk && !binary) {
+    binary = bytes;
   } else {
     container.other_chunks.emplace_back(type, bytes);
   }
 }
 
-GltfContainer read_glb(std::string_view bytes, const std::string& file) {
+// What is left of `bytes` when all but `part` of them is cut away: without a copy, as it may be most of the memory.
+std::string cut(std::string bytes, std::string_view part) {
+  const auto first = std::size_t(part.data() - bytes.data()), size = part.size();
+  bytes.resize(first + size);
+  bytes.erase(0, first);
+  return bytes;
+}
+
+GltfContainer read_glb(std::string bytes, const std::string& file) {
   const std::string_view body = glb_body(bytes, file);
   GltfContainer container;
+  std::optional<std::string_view> binary;
   std::size_t at = 0;
   for (int chunk = 0; at + kChunkHeaderSize <= body.size(); ++chunk) {
     const std::uint32_t length = read_uint32(body, at), type = read_uint32(body, at + 4);
@@ -60,10 +70,11 @@ GltfContainer read_glb(std::string_view bytes, const std::string& file) {
                    fmt::format("the length says {} bytes, {} are left", length, body.size() - at), "a whole file"});
     }
     if (chunk == 0 && type != kJsonChunk) throw Error({file, "chunk 0", "is not JSON", "the JSON chunk first"});
-    take_chunk(container, type, body.substr(at, length));
+    take_chunk(container, type, body.substr(at, length), binary);
     at += padded(length);
   }
   if (container.json.empty()) throw Error({file, "chunk 0", "has no JSON", "a glTF 2.0 scene"});
+  if (binary) container.binary = cut(std::move(bytes), *binary);
   return container;
 }
 
@@ -87,7 +98,7 @@ bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
 
 GltfContainer read_gltf_container(const std::filesystem::path& path) {
   std::string bytes = read_file(path);
-  if (is_glb(bytes)) return read_glb(bytes, path.string());
+  if (is_glb(bytes)) return read_glb(std::move(bytes), path.string());
   const std::size_t first = bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string::npos) throw Error({path.string(), "", "is empty", "a glTF 2.0 scene"});
   if (bytes[first] != '{') throw Error({path.string(), "", "is not a glTF file", ".glb or .gltf"});

@@ -5,7 +5,9 @@
 
 #include "renderer/core/error.h"
 #include "renderer/io/gltf_container.h"
+#include "renderer/io/gltf_draco.h"
 #include "renderer/io/gltf_extensions.h"
+#include "renderer/io/gltf_meshopt.h"
 #include "renderer/io/gltf_uri.h"
 
 namespace chiaro::renderer {
@@ -27,11 +29,11 @@ std::shared_ptr<const tinygltf::Model> parse(const std::string& structure, const
 }
 
 // A buffer without data is refused where it is read.
-std::string load_buffer(const GltfDocument& document, std::size_t index) {
+std::string load_buffer(GltfDocument& document, std::size_t index) {
   const GltfBufferSource& source = document.json.buffers[index];
   const std::string place = fmt::format("buffers[{}]", index);
   if (!source.uri && (index > 0 || document.binary.empty())) return "";
-  std::string bytes = source.uri ? read_uri(*source.uri, document.path, place + ".uri") : document.binary;
+  std::string bytes = source.uri ? read_uri(*source.uri, document.path, place + ".uri") : std::move(document.binary);
   if (bytes.size() < source.byte_length) {
     fail(document, place, fmt::format("has {} bytes", bytes.size()), fmt::format("byteLength, {}", source.byte_length));
   }
@@ -62,9 +64,13 @@ void load_buffers(GltfDocument& document) {
   document.buffers.resize(document.json.buffers.size());
   for (std::size_t i = 0; i < document.buffers.size(); ++i) document.buffers[i] = load_buffer(document, i);
   document.binary = {};
+  decode_meshopt_views(document);
+  decode_draco_primitives(document);
 }
 
 std::string_view buffer_view_bytes(const GltfDocument& document, int buffer_view) {
+  const auto decoded = document.decoded_views.find(buffer_view);
+  if (decoded != document.decoded_views.end()) return decoded->second;
   const tinygltf::BufferView& view = document.model->bufferViews[buffer_view];
   const std::string& buffer = document.buffers[view.buffer];
   const std::string place = fmt::format("bufferViews[{}]", buffer_view);

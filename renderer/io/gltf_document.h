@@ -2,6 +2,7 @@
 // A glTF file in memory: its structure as tinygltf parsed it, its buffers, and where its images are.
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,15 +20,18 @@ struct GltfDocument {
   std::filesystem::path path;
   std::shared_ptr<const tinygltf::Model> model;  // without buffers, images, animations, skins: see `json`
   GltfJson json;
-  std::string binary;                // the BIN chunk of a GLB
-  std::vector<std::string> buffers;  // bytes; empty before load_buffers
+  std::string binary;                            // the BIN chunk of a GLB
+  std::vector<std::string> buffers;              // bytes; empty before load_buffers
+  std::map<int, std::string> decoded_views;      // by buffer view: contents of those that were compressed
+  std::map<int, std::string> decoded_accessors;  // by accessor: elements one after the other, where compressed
   std::vector<std::string> warnings;
 };
 
 // The structure alone. Error as check_gltf_json, and for an extension under extensionsRequired that is not read here.
 GltfDocument open_gltf(const std::filesystem::path& path);
 
-// Brings in the buffers. Error for missing files and for buffers shorter than they say.
+// Brings in the buffers and what is compressed in them. Error for missing files, for buffers shorter than they say, and
+// for compressed data that are damaged.
 void load_buffers(GltfDocument& document);
 
 // The bytes of a buffer view. Error where it reaches beyond its buffer.

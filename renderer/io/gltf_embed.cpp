@@ -11,6 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr std::size_t kLeastChunk = 4;
 constexpr const char* kBufferMimeType = "application/octet-stream";
 
 bool is_external(const ordered_json& object) {
@@ -26,6 +27,7 @@ std::string mime_type_of(const ordered_json& image, const std::string& bytes) {
   if (bytes.starts_with("\x89PNG")) return "image/png";
   if (bytes.starts_with("\xff\xd8")) return "image/jpeg";
   if (bytes.starts_with("RIFF")) return "image/webp";
+  if (bytes.substr(0, 12).find("ftypavi") == 4) return "image/avif";
   return kBufferMimeType;
 }
 
@@ -37,6 +39,25 @@ void trim(std::string& bytes, const ordered_json& buffer, std::size_t index, con
                  fmt::format("byteLength, {}", length)});
   }
   bytes.resize(length);
+}
+
+void refer_to_next_buffer(ordered_json& view) {
+  if (view.contains("buffer")) view["buffer"] = view["buffer"].get<std::size_t>() + 1;
+}
+
+// Buffer 0 of a GLB is its chunk. One without data, such as the plain form of what is compressed in others, moves on.
+void free_first_buffer(ordered_json& root, std::optional<std::string>& binary) {
+  if (binary || !root.contains("buffers") || root["buffers"].empty() || root["buffers"][0].contains("uri")) return;
+  binary = std::string(kLeastChunk, '\0');
+  root["buffers"].insert(root["buffers"].begin(), ordered_json{{"byteLength", kLeastChunk}});
+  if (!root.contains("bufferViews")) return;
+  for (ordered_json& view : root["bufferViews"]) {
+    refer_to_next_buffer(view);
+    if (!view.contains("extensions")) continue;
+    for (auto& [name, extension] : view["extensions"].items()) {
+      if (extension.is_object()) refer_to_next_buffer(extension);
+    }
+  }
 }
 
 // Buffer 0 becomes the BIN chunk, whether it was a file, a data URI, or that already.
@@ -102,7 +123,10 @@ void embed_images(ordered_json& root, std::optional<std::string>& binary, const 
 
 std::string embed(const std::string& json, std::optional<std::string>& binary, const GltfEmbedding& embedding) {
   ordered_json root = ordered_json::parse(json);
-  if (!embedding.as_text) move_first_buffer(root, binary, embedding);
+  if (!embedding.as_text) {
+    free_first_buffer(root, binary);
+    move_first_buffer(root, binary, embedding);
+  }
   embed_buffers(root, binary, embedding);
   embed_images(root, binary, embedding);
   return root.dump();

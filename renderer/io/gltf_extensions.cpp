@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::string_view kRead[] = {"KHR_lights_punctual",     "KHR_materials_emissive_strength",
                                       "KHR_mesh_quantization",   "EXT_texture_webp",
-                                      "EXT_mesh_gpu_instancing", "EXT_lights_image_based"};
+                                      "EXT_texture_avif",        "EXT_mesh_gpu_instancing",
+                                      "EXT_lights_image_based",  "KHR_draco_mesh_compression",
+                                      "EXT_meshopt_compression", "KHR_node_visibility"};
 
 // Of materials, and how their textures are placed.
 constexpr std::string_view kReadOfMaterials[] = {
@@ -31,8 +33,7 @@ constexpr std::string_view kWithoutEffect[] = {"KHR_xmp",
                                                "EXT_mesh_features"};
 
 // Files that do not require them carry the same content in plain form beside it.
-constexpr std::string_view kWithFallback[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                              "KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"};
+constexpr std::string_view kWithFallback[] = {"KHR_texture_basisu", "MSFT_texture_dds"};
 
 template <std::size_t N>
 bool contains(const std::string_view (&names)[N], const std::string& name) {

@@ -186,20 +186,60 @@ std::vector<GltfImageSource> take_images(json& root) {
   return images;
 }
 
-bool take(json& root, const char* key) {
-  const auto member = root.find(key);
-  const bool has_any = member != root.end() && !member->empty();
-  root.erase(key);
-  return has_any;
+std::map<int, GltfMeshoptView> meshopt_views(const json& root) {
+  std::map<int, GltfMeshoptView> views;
+  const json none = json::array();
+  const json& all = root.contains("bufferViews") ? root["bufferViews"] : none;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const json extensions = all[i].value("extensions", json::object());
+    const auto found = extensions.find("EXT_meshopt_compression");
+    if (found == extensions.end()) continue;
+    const auto count = [&](const char* key) { return found->value(key, std::size_t{0}); };
+    views[int(i)] = {found->value("buffer", 0),     count("byteOffset"), count("byteLength"),
+                     count("byteStride"),           count("count"),      found->value("mode", ""),
+                     found->value("filter", "NONE")};
+  }
+  return views;
 }
 
-bool take_morph_targets(json& root) {
-  bool found = false;
-  if (!root.contains("meshes")) return found;
-  for (json& mesh : root["meshes"]) {
-    for (json& primitive : mesh["primitives"]) found |= take(primitive, "targets");
+std::vector<GltfSkin> take_skins(json& root) {
+  std::vector<GltfSkin> skins;
+  for (const json& skin : root.value("skins", json::array())) {
+    skins.push_back({skin["joints"].get<std::vector<int>>(), skin.value("inverseBindMatrices", -1)});
   }
-  return found;
+  root.erase("skins");
+  return skins;
+}
+
+GltfAnimationChannel read_channel(const json& channel) {
+  const json& target = channel["target"];
+  return {channel["sampler"].get<int>(), target.value("node", -1), target["path"].get<std::string>()};
+}
+
+GltfAnimation read_animation(const json& source, const std::string& file, const std::string& place) {
+  GltfAnimation animation;
+  animation.name = source.value("name", "");
+  for (const json& sampler : source["samplers"]) {
+    animation.samplers.push_back(
+        {sampler["input"].get<int>(), sampler["output"].get<int>(), sampler.value("interpolation", "LINEAR")});
+  }
+  for (const json& channel : source["channels"]) {
+    animation.channels.push_back(read_channel(channel));
+    const int sampler = animation.channels.back().sampler, count = int(animation.samplers.size());
+    if (sampler < count) continue;
+    fail(file, fmt::format("{}.channels[{}].sampler", place, animation.channels.size() - 1),
+         fmt::format("{} is out of range", sampler), fmt::format("an index into samplers, which has {}", count));
+  }
+  return animation;
+}
+
+std::vector<GltfAnimation> take_animations(json& root, const std::string& file) {
+  std::vector<GltfAnimation> animations;
+  for (const json& animation : root.value("animations", json::array())) {
+    animations.push_back(read_animation(animation, file, fmt::format("animations[{}]", animations.size())));
+  }
+  root.erase("animations");
+  return animations;
 }
 
 void move_indices(json& root) {
@@ -221,14 +261,14 @@ GltfJson check_gltf_json(const std::string& text, const std::filesystem::path& p
   for (const JsonRule& rule : gltf_json_rules()) RuleCheck(root, rule, file).run();
   check_version(root, file);
   GltfJson result;
-  result.has_animations = take(root, "animations");
-  result.has_skins = take(root, "skins");
-  result.has_morph_targets = take_morph_targets(root);
+  result.animations = take_animations(root, file);
+  result.skins = take_skins(root);
   move_indices(root);
   result.extensions_used = root.value("extensionsUsed", std::vector<std::string>{});
   result.extensions_required = root.value("extensionsRequired", std::vector<std::string>{});
   result.buffers = take_buffers(root);
   result.images = take_images(root);
+  result.meshopt_views = meshopt_views(root);
   result.structure = root.dump();
   return result;
 }

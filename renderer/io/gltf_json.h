@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,14 +23,44 @@ struct GltfImageSource {
   int buffer_view = -1;  // where there is no uri
 };
 
+// EXT_meshopt_compression of a buffer view.
+struct GltfMeshoptView {
+  int buffer = 0;
+  std::size_t byte_offset = 0, byte_length = 0, byte_stride = 0, count = 0;
+  std::string mode, filter = "NONE";
+};
+
+struct GltfSkin {
+  std::vector<int> joints;  // nodes
+  int inverse_bind_matrices = -1;
+};
+
+struct GltfAnimationSampler {
+  int input = 0, output = 0;
+  std::string interpolation = "LINEAR";
+};
+
+struct GltfAnimationChannel {
+  int sampler = 0, node = -1;
+  std::string path;
+};
+
+struct GltfAnimation {
+  std::string name;
+  std::vector<GltfAnimationSampler> samplers;
+  std::vector<GltfAnimationChannel> channels;
+};
+
 struct GltfJson {
-  // All but what stands below, and animations and skins. A primitive's indices stand among its attributes under the
+  // All but what stands below. A primitive's indices stand among its attributes under the
   // name kIndicesAttribute, as tinygltf refuses index accessors without a buffer view, which are allowed.
   std::string structure;
   std::vector<std::string> extensions_used, extensions_required;
   std::vector<GltfBufferSource> buffers;
   std::vector<GltfImageSource> images;
-  bool has_animations = false, has_skins = false, has_morph_targets = false;
+  std::map<int, GltfMeshoptView> meshopt_views;  // by buffer view
+  std::vector<GltfSkin> skins;
+  std::vector<GltfAnimation> animations;
 };
 
 // Error, naming `path` and the place, for what is not JSON or not glTF 2.0, for values of wrong types, for indices that

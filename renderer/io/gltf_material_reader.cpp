@@ -38,7 +38,7 @@ TextureUse texture_use(GltfMaterialReader& reader, const std::string& name, cons
   use.texture = reader.textures.add(reader.document, info.index, place, reader.warnings);
   use.uv_set = info.uv_set;
   if (info.transform != nullptr) read_transform(*info.transform, use);
-  if (use.uv_set > 1) {
+  if (use.uv_set >= kUvSetCount) {
     reader.warnings.push_back(fmt::format("{}: TEXCOORD_{} is not read; TEXCOORD_0 is used", place, use.uv_set));
     use.uv_set = 0;
   }

@@ -52,43 +52,44 @@ Mat4f local_transform(const tinygltf::Node& node) {
   return transform;
 }
 
-bool is_finite(const Mat4f& transform) {
-  return std::all_of(transform.m.begin(), transform.m.end(), [](float v) { return std::isfinite(v); });
-}
-
 int light_of(const tinygltf::Node& node) {
   const auto extension = node.extensions.find("KHR_lights_punctual");
   return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
 }
 
-PlacedNode placed(const tinygltf::Node& node, int index, const Mat4f& world_from_node) {
-  return {index, node.name, node.mesh, node.camera, light_of(node), world_from_node};
+template <class T>
+std::vector<double> doubles(const T& v) {
+  if constexpr (std::is_same_v<T, Vec4f>)
+    return {v.x, v.y, v.z, v.w};
+  else
+    return {v.x, v.y, v.z};
 }
 
-// World transforms of all nodes, whatever scene they are in. A node that no root leads to is part of a cycle.
-std::vector<PlacedNode> place_all(const GltfDocument& document, const std::vector<int>& parents) {
-  const auto& nodes = document.model->nodes;
-  std::vector<PlacedNode> all(nodes.size());
-  std::vector<int> waiting;
-  std::size_t reached = 0;
-  std::vector<bool> is_reached(nodes.size(), false);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (parents[i] == kNoParent) waiting.push_back(int(i));
-  }
-  for (; !waiting.empty(); ++reached) {
-    const int i = waiting.back();
-    waiting.pop_back();
-    const Mat4f local = local_transform(nodes[i]);
-    all[i] = placed(nodes[i], i, parents[i] == kNoParent ? local : all[parents[i]].world_from_node * local);
-    if (!is_finite(all[i].world_from_node)) fail(document, node_place(i), "its transform is not finite");
-    is_reached[i] = true;
-    waiting.insert(waiting.end(), nodes[i].children.begin(), nodes[i].children.end());
-  }
-  if (reached < nodes.size()) {
-    const auto looped = std::find(is_reached.begin(), is_reached.end(), false) - is_reached.begin();
-    fail(document, node_place(looped), "is its own ancestor", "a hierarchy without cycles");
-  }
-  return all;
+Mat4f posed_transform(tinygltf::Node node, const NodePose& pose) {
+  if (pose.translation) node.translation = doubles(*pose.translation);
+  if (pose.rotation) node.rotation = doubles(*pose.rotation);
+  if (pose.scale) node.scale = doubles(*pose.scale);
+  return local_transform(node);
+}
+
+const NodePose* find_pose(const GltfPose& pose, int node) {
+  const auto found = pose.find(node);
+  return found == pose.end() ? nullptr : &found->second;
+}
+
+// The weights of the morph targets: as posed, else the node's, else the mesh's.
+std::vector<float> weights_of(const GltfDocument& document, int index, const NodePose* pose) {
+  const tinygltf::Node& node = document.model->nodes[index];
+  if (node.mesh < 0) return {};
+  if (pose != nullptr && !pose->weights.empty()) return pose->weights;
+  const std::vector<double>& weights = node.weights.empty() ? document.model->meshes[node.mesh].weights : node.weights;
+  return {weights.begin(), weights.end()};
+}
+
+bool is_hidden(const tinygltf::Node& node) {
+  const auto extension = node.extensions.find("KHR_node_visibility");
+  return extension != node.extensions.end() && extension->second.Has("visible") &&
+         !extension->second.Get("visible").Get<bool>();
 }
 
 std::vector<int> roots_of(const GltfDocument& document, const std::vector<int>& parents) {
@@ -110,21 +111,49 @@ std::vector<double> instance_values(const std::vector<float>& values, std::size_
 
 std::string place_of(const PlacedNode& node) { return node_place(std::size_t(node.node)); }
 
-std::vector<PlacedNode> place_nodes(const GltfDocument& document) {
+// A node that no root leads to is part of a cycle.
+std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose& pose) {
+  const auto& nodes = document.model->nodes;
   const std::vector<int> parents = parents_of(document);
-  const std::vector<PlacedNode> all = place_all(document, parents);
-  std::vector<int> waiting = roots_of(document, parents);
+  std::vector<Mat4f> world(nodes.size());
+  std::vector<int> waiting;
+  std::size_t reached = 0;
+  std::vector<bool> is_reached(nodes.size(), false);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (parents[i] == kNoParent) waiting.push_back(int(i));
+  }
+  for (; !waiting.empty(); ++reached) {
+    const int i = waiting.back();
+    waiting.pop_back();
+    const NodePose* posed = find_pose(pose, i);
+    const Mat4f local = posed == nullptr ? local_transform(nodes[i]) : posed_transform(nodes[i], *posed);
+    world[i] = parents[i] == kNoParent ? local : world[parents[i]] * local;
+    if (!is_finite(world[i])) fail(document, node_place(i), "its transform is not finite");
+    is_reached[i] = true;
+    waiting.insert(waiting.end(), nodes[i].children.begin(), nodes[i].children.end());
+  }
+  if (reached < nodes.size()) {
+    const auto looped = std::find(is_reached.begin(), is_reached.end(), false) - is_reached.begin();
+    fail(document, node_place(looped), "is its own ancestor", "a hierarchy without cycles");
+  }
+  return world;
+}
+
+std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose& pose) {
+  const std::vector<Mat4f> world = world_from_nodes(document, pose);
+  std::vector<int> waiting = roots_of(document, parents_of(document));
   std::reverse(waiting.begin(), waiting.end());
-  std::vector<bool> visited(all.size(), false);
+  std::vector<bool> visited(world.size(), false);
   std::vector<PlacedNode> nodes;
   while (!waiting.empty()) {
     const int i = waiting.back();
     waiting.pop_back();
-    if (visited[i]) continue;
+    const tinygltf::Node& node = document.model->nodes[i];
+    if (visited[i] || is_hidden(node)) continue;
     visited[i] = true;
-    nodes.push_back(all[i]);
-    const std::vector<int>& children = document.model->nodes[i].children;
-    waiting.insert(waiting.end(), children.rbegin(), children.rend());
+    nodes.push_back({i, node.name, node.mesh, node.camera, light_of(node), node.skin,
+                     weights_of(document, i, find_pose(pose, i)), world[i]});
+    waiting.insert(waiting.end(), node.children.rbegin(), node.children.rend());
   }
   return nodes;
 }

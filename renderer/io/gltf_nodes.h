@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/core/vec.h"
+#include "renderer/io/gltf_animation.h"
 #include "renderer/io/gltf_document.h"
 
 namespace chiaro::renderer {
@@ -12,13 +13,18 @@ namespace chiaro::renderer {
 struct PlacedNode {
   int node = 0;      // index into the file's nodes
   std::string name;  // of the node; may be empty
-  int mesh = -1, camera = -1, light = -1;
+  int mesh = -1, camera = -1, light = -1, skin = -1;
+  std::vector<float> weights;  // of its mesh's morph targets
   Mat4f world_from_node;
 };
 
-// The nodes of the default scene, or of all scenes where there is no default one, parents before children.
-// Error for cycles, nodes with two parents, and transforms that are not finite.
-std::vector<PlacedNode> place_nodes(const GltfDocument& document);
+// World transforms of all nodes of the file in a pose, whatever scene they are in. Error for cycles, nodes with two
+// parents, and transforms that are not finite.
+std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose& pose = {});
+
+// The visible nodes of the default scene, or of all scenes where there is no default one, parents before children.
+// Error as world_from_nodes.
+std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose& pose = {});
 
 // "nodes[3]"
 std::string place_of(const PlacedNode& node);

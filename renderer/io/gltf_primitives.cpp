@@ -35,12 +35,6 @@ std::vector<Vec2f> read_uv(const GltfDocument& document, const GltfPrimitiveRef&
   return accessor < 0 ? std::vector<Vec2f>{} : read_vec2(document, accessor, attribute_place(ref, name));
 }
 
-std::vector<Vec4f> read_vec4_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
-                                       const std::string& name) {
-  const int accessor = checked_attribute(document, ref, name);
-  return accessor < 0 ? std::vector<Vec4f>{} : read_vec4(document, accessor, attribute_place(ref, name));
-}
-
 std::vector<std::uint32_t> corners(const GltfDocument& document, const GltfPrimitiveRef& ref) {
   const std::size_t vertices = vertex_count(document, ref);
   const int accessor = find_attribute(document, ref, kIndicesAttribute);
@@ -110,6 +104,12 @@ std::vector<Vec3f> read_vec3_attribute(const GltfDocument& document, const GltfP
   return accessor < 0 ? std::vector<Vec3f>{} : read_vec3(document, accessor, attribute_place(ref, name));
 }
 
+std::vector<Vec4f> read_vec4_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
+                                       const std::string& name) {
+  const int accessor = checked_attribute(document, ref, name);
+  return accessor < 0 ? std::vector<Vec4f>{} : read_vec4(document, accessor, attribute_place(ref, name));
+}
+
 std::vector<float> read_scalar_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
                                          const std::string& name) {
   const int accessor = checked_attribute(document, ref, name);
@@ -140,7 +140,7 @@ std::optional<Mesh> read_primitive(const GltfDocument& document, const GltfPrimi
   mesh.positions = read_positions(document, ref);
   mesh.normals = read_vec3_attribute(document, ref, "NORMAL");
   mesh.tangents = read_vec4_attribute(document, ref, "TANGENT");
-  mesh.uv = {read_uv(document, ref, "TEXCOORD_0"), read_uv(document, ref, "TEXCOORD_1")};
+  for (int n = 0; n < kUvSetCount; ++n) mesh.uv[n] = read_uv(document, ref, fmt::format("TEXCOORD_{}", n));
   mesh.colors = read_colors(document, ref);
   mesh.triangles = read_triangles(document, ref).value();
   mesh.material = primitive_of(document, ref).material;

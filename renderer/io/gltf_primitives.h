@@ -30,6 +30,8 @@ std::vector<Vec3f> read_positions(const GltfDocument& document, const GltfPrimit
 // An attribute of as many elements as there are vertices; empty where the primitive has none.
 std::vector<Vec3f> read_vec3_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
                                        const std::string& name);
+std::vector<Vec4f> read_vec4_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
+                                       const std::string& name);
 std::vector<float> read_scalar_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
                                          const std::string& name);
 

@@ -19,8 +19,11 @@ Wrap wrap_of(int mode) {
 }
 
 int image_of(const tinygltf::Texture& texture) {
-  const auto webp = texture.extensions.find("EXT_texture_webp");
-  return webp == texture.extensions.end() ? texture.source : webp->second.Get("source").GetNumberAsInt();
+  for (const char* extension : {"EXT_texture_avif", "EXT_texture_webp"}) {
+    const auto found = texture.extensions.find(extension);
+    if (found != texture.extensions.end()) return found->second.Get("source").GetNumberAsInt();
+  }
+  return texture.source;
 }
 
 std::string label_of(const GltfDocument& document, int image) {

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "renderer/io/gltf_animation.h"
 #include "renderer/scene/light.h"
 #include "renderer/scene/scene.h"
 
 namespace chiaro::renderer {
 
 struct LoadOptions {
+  AnimationChoice animation;
   std::string variant;  // of KHR_materials_variants; empty: the materials that primitives have of their own
 };
 
@@ -21,12 +23,13 @@ struct LoadedScene {
   std::vector<std::string> warnings;  // one line each, what was left out or repaired
 };
 
-// Loads .glb or .gltf: node hierarchies (the default scene; with none, every root node), instances, cameras,
-// metallic-roughness materials with textures, vertex colours, alpha, emission, KHR_lights_punctual,
-// the KHR_materials_* extensions of gltf_extensions.cpp, KHR_texture_transform. Triangles of zero area are dropped.
-// Error, naming the file and the place, for what is not a glTF, out-of-range indices, truncated buffers, positions that
-// are not finite, cycles among nodes, a variant that the file does not have, or an extension under extensionsRequired
-// that is not read here.
+// Loads .glb or .gltf: node hierarchies (the default scene; with none, every root node), instances, cameras, skins and
+// morph targets (as the nodes stand, or at the time of an animation), metallic-roughness materials with textures, the
+// KHR_materials_* extensions of gltf_extensions.cpp, KHR_texture_transform, vertex colours, alpha, emission,
+// KHR_lights_punctual, Draco and meshoptimizer compression. Skinned meshes are in world space. Triangles of zero area
+// are dropped; tangents are made for normal maps. Error, naming the file and the place, for what is not a glTF,
+// out-of-range indices, truncated buffers, positions that are not finite, cycles among nodes, a variant that the file
+// does not have, or an extension under extensionsRequired that is not read here.
 LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace chiaro::renderer

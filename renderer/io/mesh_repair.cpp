@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "renderer/io/mesh_vertices.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -28,24 +30,6 @@ Vec3f unit(const Vec3d& v) {
 
 std::size_t drop_degenerate_triangles(Mesh& mesh) {
   return std::erase_if(mesh.triangles, [&](const Triangle& t) { return length(area_vector(mesh.positions, t)) == 0; });
-}
-
-template <class T>
-void gather(std::vector<T>& values, const std::vector<std::uint32_t>& sources) {
-  if (values.empty()) return;
-  std::vector<T> gathered(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) gathered[i] = values[sources[i]];
-  values = std::move(gathered);
-}
-
-// New vertex i is old vertex sources[i].
-void gather_vertices(Mesh& mesh, const std::vector<std::uint32_t>& sources) {
-  gather(mesh.positions, sources);
-  gather(mesh.normals, sources);
-  gather(mesh.tangents, sources);
-  gather(mesh.uv[0], sources);
-  gather(mesh.uv[1], sources);
-  gather(mesh.colors, sources);
 }
 
 void drop_unused_vertices(Mesh& mesh) {
@@ -139,6 +123,15 @@ std::size_t repair_colors(std::vector<Vec4f>& colors) {
 
 }  // namespace
 
+MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
+  degenerate_triangles += other.degenerate_triangles;
+  bad_normals += other.bad_normals;
+  bad_tangent_meshes += other.bad_tangent_meshes;
+  bad_coordinates += other.bad_coordinates;
+  bad_skin_weights += other.bad_skin_weights;
+  return *this;
+}
+
 void repair_mesh(Mesh& mesh, MeshRepairs& repairs) {
   repairs.degenerate_triangles += drop_degenerate_triangles(mesh);
   drop_unused_vertices(mesh);
@@ -148,7 +141,8 @@ void repair_mesh(Mesh& mesh, MeshRepairs& repairs) {
     repairs.bad_normals += repair_normals(mesh);
   }
   repairs.bad_tangent_meshes += repair_tangents(mesh) ? 0 : 1;
-  repairs.bad_coordinates += repair_uv(mesh.uv[0]) + repair_uv(mesh.uv[1]) + repair_colors(mesh.colors);
+  for (std::vector<Vec2f>& uv : mesh.uv) repairs.bad_coordinates += repair_uv(uv);
+  repairs.bad_coordinates += repair_colors(mesh.colors);
 }
 
 std::vector<Vec3f> smooth_normals(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {

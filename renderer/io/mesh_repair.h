@@ -13,6 +13,8 @@ struct MeshRepairs {
   std::size_t bad_normals = 0;           // replaced by those of the surface
   std::size_t bad_tangent_meshes = 0;    // made without
   std::size_t bad_coordinates = 0;       // texture coordinates and colours that are not finite, replaced
+  std::size_t bad_skin_weights = 0;      // vertices of skins whose weights were mended
+  MeshRepairs& operator+=(const MeshRepairs& other);
 };
 
 // Drops triangles of zero area and vertices that no triangle uses, makes flat normals where there are none (each

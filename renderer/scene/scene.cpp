@@ -70,8 +70,10 @@ std::string fingerprint(const Scene& scene) {
     add(f, mesh.positions);
     add(f, mesh.normals);
     add(f, mesh.triangles);
-    add(f, mesh.uv[0]);
-    add(f, mesh.uv[1]);
+    for (std::size_t n = 0; n < mesh.uv.size(); ++n) {
+      if (n < 2 || !mesh.uv[n].empty()) add(f, mesh.uv[n]);
+    }
+    if (!mesh.tangents.empty()) add(f, mesh.tangents);
     add(f, mesh.colors);
     f.add(mesh.material);
   }

@@ -47,7 +47,7 @@ struct Mesh {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;
   std::vector<Vec4f> tangents;  // w: handedness
-  std::array<std::vector<Vec2f>, 2> uv;
+  std::array<std::vector<Vec2f>, kUvSetCount> uv;
   std::vector<Vec4f> colors;  // linear RGBA
   std::vector<Triangle> triangles;
   int material = 0;  // index into Scene::materials

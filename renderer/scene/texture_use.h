@@ -21,10 +21,12 @@ inline UvTransform make_uv_transform(Vec2f offset, float rotation, Vec2f scale) 
   return {{c * scale.x, s * scale.y, offset.x, -s * scale.x, c * scale.y, offset.y}};
 }
 
+inline constexpr int kUvSetCount = 8;
+
 // The use of a texture by a material; texture < 0: none.
 struct TextureUse {
   int texture = -1;
-  int uv_set = 0;            // 0 or 1
+  int uv_set = 0;            // less than kUvSetCount
   bool transformed = false;  // by `transform`
   UvTransform transform;
 };

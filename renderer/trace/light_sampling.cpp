@@ -76,10 +76,9 @@ PunctualSample sample_punctual(const Light& light, Vec3f point) { return std::vi
 PunctualEmission::PunctualEmission(const Lights& lights) : lights_(lights) {
   for (const Light& light : lights) {
     const EmissionCone cone = emission_cone(light);
-    power_.push_back(cone.solid_angle() * max_component(cone.intensity));
-    power_end_.push_back((power_end_.empty() ? 0 : power_end_.back()) + double(power_.back()));
+    power_.push_back(double(cone.solid_angle()) * double(max_component(cone.intensity)));
+    power_end_.push_back((power_end_.empty() ? 0 : power_end_.back()) + power_.back());
   }
-  total_power_ = power_end_.empty() ? 0 : float(power_end_.back());
 }
 
 PunctualEmission::Sample PunctualEmission::sample(float pick, Vec2f u) const {
@@ -99,7 +98,7 @@ float PunctualEmission::pdf(std::size_t light, Vec3f direction) const {
   if (!(power_[light] > 0)) return 0;
   const EmissionCone cone = emission_cone(lights_[light]);
   if (dot(direction, cone.axis) < cone.cos_outer && cone.cos_outer > -1) return 0;
-  return power_[light] / (total_power_ * cone.solid_angle());
+  return float(power_[light] / (power_end_.back() * double(cone.solid_angle())));
 }
 
 EmissiveTriangles::EmissiveTriangles(const Scene& scene) : scene_(scene), emitter_(scene.instances.size()) {

@@ -25,7 +25,7 @@ class PunctualEmission {
  public:
   // Keeps a reference to `lights`, which must outlive it.
   explicit PunctualEmission(const Lights& lights);
-  bool empty() const { return !(total_power_ > 0); }
+  bool empty() const { return power_end_.empty() || !(power_end_.back() > 0); }
 
   struct Sample {
     std::size_t light = 0;
@@ -38,9 +38,8 @@ class PunctualEmission {
 
  private:
   const Lights& lights_;
-  std::vector<float> power_;       // lumens of the brightest channel
+  std::vector<double> power_;      // lumens of the brightest channel; a float's range is too small for some
   std::vector<double> power_end_;  // cumulative
-  float total_power_ = 0;
 };
 
 // The scene's emissive triangles, sampled by a light tree. Triangles send light from both of their sides.

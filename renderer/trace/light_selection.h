@@ -17,7 +17,7 @@ namespace chiaro::renderer {
 class LightSelection {
  public:
   // Up to so many lights all are asked where a surface is seen directly.
-  static constexpr std::size_t kFew = 8;
+  static constexpr std::size_t kFew = 4;
   // Up to so many lights all are weighed. (Weighing four takes about as long as one step down the tree.)
   static constexpr std::size_t kWeighed = 256;
 

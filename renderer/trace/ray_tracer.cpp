@@ -1,7 +1,5 @@
 #include "renderer/trace/ray_tracer.h"
 
-#include <cstring>
-
 #include <embree3/rtcore.h>
 
 #include "renderer/core/error.h"
@@ -133,18 +131,25 @@ struct RayTracer::Embree {
     if (device != nullptr) rtcReleaseDevice(device);
   }
 
+  // Where the mesh is already in the space of the target its own vertices are traced. Embree reads 16 bytes for each.
+  void set_vertices(RTCGeometry geometry, const Mesh& mesh, const Mat4f& target_from_object) {
+    const std::size_t count = mesh.positions.size();
+    if (target_from_object.m == Mat4f{}.m && mesh.positions.capacity() > count) {
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
+                                 sizeof(Vec3f), count);
+      return;
+    }
+    auto* vertices = static_cast<Vec3f*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), count));
+    if (vertices == nullptr) throw Error({"", "ray tracer", "not enough memory for the scene", ""});
+    for (std::size_t i = 0; i < count; ++i) vertices[i] = transform_point(target_from_object, mesh.positions[i]);
+  }
+
   RTCGeometry make_geometry(const Mesh& mesh, std::size_t user, const Mat4f& target_from_object) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 sizeof(Vec3f), mesh.positions.size()));
-    auto* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle),
-                                            mesh.triangles.size());
-    if (vertices == nullptr || indices == nullptr)
-      throw Error({"", "ray tracer", "not enough memory for the scene", ""});
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-      vertices[i] = transform_point(target_from_object, mesh.positions[i]);
-    }
-    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+    set_vertices(geometry, mesh, target_from_object);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                               sizeof(Triangle), mesh.triangles.size());
     rtcSetGeometryUserData(geometry, &users[user]);
     if (needs_filter(users[user].scene->materials[mesh.material])) {
       rtcSetGeometryIntersectFilterFunction(geometry, filter_surface);

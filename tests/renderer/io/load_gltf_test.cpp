@@ -297,7 +297,7 @@ TEST(GltfMaterials, FactorsTexturesAndAlphaComeThrough) {
                               {"metallicFactor", 0},
                               {"roughnessFactor", 0.5},
                               {"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}},
-                            {"emissiveTexture", {{"index", 1}, {"texCoord", 2}}},
+                            {"emissiveTexture", {{"index", 1}, {"texCoord", 9}}},
                             {"emissiveFactor", {1, 0.5, 0}},
                             {"alphaMode", "MASK"},
                             {"alphaCutoff", 0.25},
@@ -315,7 +315,7 @@ TEST(GltfMaterials, FactorsTexturesAndAlphaComeThrough) {
   EXPECT_TRUE(material.double_sided);
   EXPECT_EQ(material.base_color_texture.uv_set, 1);
   EXPECT_EQ(material.emission_texture.uv_set, 0);
-  EXPECT_TRUE(mentions(loaded.warnings, "TEXCOORD_2"));
+  EXPECT_TRUE(mentions(loaded.warnings, "TEXCOORD_9"));
   ASSERT_EQ(loaded.scene.textures.size(), 2U) << "one image, sampled in two ways";
   const renderer::Texture& texture = loaded.scene.textures[std::size_t(material.base_color_texture.texture)];
   EXPECT_EQ(texture.rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255}));
@@ -339,11 +339,9 @@ TEST(GltfBuffers, DataUrisAndFilesWithSpacesAreRead) {
 TEST(GltfExtensions, UsedOnesThatAreNotReadWarnOnce) {
   GltfBuilder gltf = triangle_scene();
   gltf.root["extensionsUsed"] = {"KHR_materials_iridescence", "KHR_xmp"};
-  gltf.root["animations"] = ordered_json::array({{{"channels", {}}}});
   const LoadedScene loaded = load(gltf);
-  ASSERT_EQ(loaded.warnings.size(), 2U);
+  ASSERT_EQ(loaded.warnings.size(), 1U);
   EXPECT_TRUE(mentions(loaded.warnings, "KHR_materials_iridescence"));
-  EXPECT_TRUE(mentions(loaded.warnings, "animations"));
 }
 
 }  // namespace

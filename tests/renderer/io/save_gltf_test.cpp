@@ -156,6 +156,57 @@ TEST(SaveGltfLights, AMissingFileIsNamedAndNothingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder / "lit.glb"));
 }
 
+// All that this program reads, and what it does not, as compressing programs write it: a file is not read to be saved.
+TEST(SaveGltfLights, CompressedDataAnimationsAndExtensionsStayAsTheyAre) {
+  GltfBuilder gltf = triangle_scene();
+  const int packed = gltf.add_view("not read, not changed");
+  gltf.root["bufferViews"][std::size_t(packed)]["extensions"]["EXT_meshopt_compression"] = {
+      {"buffer", 0}, {"byteLength", 21}, {"byteStride", 4}, {"count", 12}, {"mode", "ATTRIBUTES"}};
+  gltf.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", packed},
+                                                                  {"attributes", {{"POSITION", 0}}}};
+  gltf.primitive()["targets"] = {{{"POSITION", 0}}};
+  gltf.root["nodes"][0]["extensions"]["VENDOR_unknown"] = {{"deep", {1, 2.5, {{"x", nullptr}}}}};
+  gltf.root["nodes"][0]["skin"] = 0;
+  gltf.root["skins"] = {{{"joints", {0}}, {"extras", {{"rig", "a"}}}}};
+  gltf.root["animations"] = {
+      {{"samplers", {{{"input", 0}, {"output", 0}}}},
+       {"channels",
+        {{{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", 7}}}}}}}}}};
+  gltf.root["extensionsUsed"] = {"VENDOR_unknown", "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
+  gltf.root["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_draco_mesh_compression"};
+  gltf.root["buffers"] = {{{"byteLength", gltf.binary.size()}},
+                          {{"byteLength", 48}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.glb", gltf.glb());
+  save_gltf_with_lights(scene, {PointLight{"lamp", {1, 2, 3}, {4, 5, 6}}}, folder / "lit.glb", {});
+  const GltfContainer before = read_gltf_container(scene), after = read_gltf_container(folder / "lit.glb");
+  EXPECT_EQ(before.binary, after.binary);
+  ordered_json expected = ordered_json::parse(before.json), saved = ordered_json::parse(after.json);
+  EXPECT_EQ(saved["nodes"].size(), 2U);
+  for (const char* changed : {"extensions", "scenes", "scene"}) saved.erase(changed);
+  saved["nodes"].erase(1);
+  saved["extensionsUsed"].erase(3);
+  EXPECT_EQ(saved, expected);
+}
+
+TEST(SaveGltfLights, AFirstBufferWithoutDataMakesRoomForTheChunk) {
+  GltfBuilder gltf = triangle_scene();
+  const TemporaryFolder folder;
+  folder.write("data.bin", gltf.binary);
+  ordered_json root = gltf.root;
+  root["buffers"] = {{{"byteLength", 36}}, {{"byteLength", 36}, {"uri", "data.bin"}}};
+  root["bufferViews"][0]["buffer"] = 1;
+  root["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteLength", 4}, {"extensions", {{"VENDOR_packing", {{"buffer", 1}, {"byteLength", 4}}}}}});
+  const auto scene = folder.write("scene.gltf", root.dump());
+  save_gltf_with_lights(scene, {}, folder / "lit.glb", {});
+  const ordered_json saved = ordered_json::parse(read_gltf_container(folder / "lit.glb").json);
+  EXPECT_EQ(saved["buffers"].size(), 3U);
+  EXPECT_EQ(saved["bufferViews"][1]["buffer"], 1);
+  EXPECT_EQ(saved["bufferViews"][1]["extensions"]["VENDOR_packing"]["buffer"], 2);
+  EXPECT_EQ(fingerprint(load_gltf(folder / "lit.glb").scene), fingerprint(load_gltf(scene).scene));
+}
+
 TEST(SaveGltfLights, AnImageAloneGetsABufferOfItsOwn) {
   const TemporaryFolder folder;
   renderer::Image image = renderer::make_image(1, 1, {"R", "G", "B"});

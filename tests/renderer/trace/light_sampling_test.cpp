@@ -173,6 +173,15 @@ TEST(PunctualEmission, IsEmptyWhereNoLightHasAPlaceAndPower) {
   EXPECT_FALSE(PunctualEmission(punctual_lights()).empty());
 }
 
+TEST(PunctualEmission, OfMoreLumensThanFloatsHoldStaysInRange) {
+  const Lights lights{PointLight{"", {0, 0, 0}, {1, 1, 1}}, PointLight{"", {1, 0, 0}, {3e38F, 3e38F, 3e38F}}};
+  const PunctualEmission emission(lights);
+  for (const float pick : {1e-6F, 0.5F, 0.99999994F}) {
+    EXPECT_EQ(emission.sample(pick, {0.5F, 0.5F}).light, 1U);
+  }
+  EXPECT_NEAR(emission.pdf(1, {0, 0, 1}), 1 / (4 * kPi), 1e-6F);
+}
+
 TEST(SamplePunctual, FollowsTheInverseSquareAndStaysFinite) {
   const Light light = PointLight{"", {1, 2, 3}, {8, 4, 2}};
   const PunctualSample s = sample_punctual(light, {1, 4, 3});

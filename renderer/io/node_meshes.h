@@ -1,0 +1,38 @@
+#pragma once
+// The meshes that the nodes of a glTF file show.
+
+#include <vector>
+
+#include "renderer/io/gltf_document.h"
+#include "renderer/io/gltf_nodes.h"
+#include "renderer/io/mesh_repair.h"
+
+namespace chiaro::renderer {
+
+// Indices into Scene::meshes, one per primitive that has triangles.
+struct NodeMeshes {
+  std::vector<int> in_node;   // in the space of the node
+  std::vector<int> in_world;  // moved by a skin, which leaves the node's own transform out
+};
+
+struct NodeMeshList {
+  std::vector<NodeMeshes> of_node;  // as the nodes given
+  MeshRepairs repairs;
+  std::size_t without_triangles = 0;  // primitives
+};
+
+// How the nodes stand and what they wear.
+struct NodeState {
+  std::vector<Mat4f> world_from_nodes;
+  int variant = -1;  // of KHR_materials_variants; -1: none
+};
+
+Material default_material();
+
+// Reads what the nodes show into scene.meshes, repaired, with morph targets and skins applied and tangents made where
+// the material has a normal map. Nodes share what is the same mesh with the same skin and weights. Primitives without a
+// material get a default one, which is added to the materials. On all threads, in the order of the nodes.
+NodeMeshList read_node_meshes(const GltfDocument& document, const std::vector<PlacedNode>& nodes,
+                              const NodeState& state, Scene& scene);
+
+}  // namespace chiaro::renderer
