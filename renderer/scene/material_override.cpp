@@ -5,6 +5,7 @@ namespace {
 
 void make_diffuse(Material& material) {
   material.lambert = true;
+  material.geometric_horizon = true;
   material.metallic = 0;
   material.roughness = 1;
   material.metallic_roughness_texture = {};

@@ -16,9 +16,9 @@ struct MaterialOverride {
   std::optional<Vec3f> albedo;  // every surface a Lambert of this; alpha kept, no emission
 };
 
-// The scene with its materials replaced, as lighting artists' clay renders do. Where they are, textures are filtered as
-// stored, as Blender's Cycles does, so that frames of both programs compare. (Filtered in linear light, as glTF wants
-// it, they are up to 0.7 % brighter on the scenes that were looked at.)
+// The scene with its materials replaced, as lighting artists' clay renders do. Where they are, frames compare with
+// those of Blender's Cycles: textures are filtered as stored, and light ends at the triangles' horizon. (Filtered in
+// linear light, as glTF wants it, they are up to 0.7 % brighter on the scenes that were looked at.)
 Scene with_materials(Scene scene, const MaterialOverride& materials);
 
 }  // namespace chiaro::renderer

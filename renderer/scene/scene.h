@@ -33,6 +33,7 @@ struct Material {
   float alpha_cutoff = 0.5F;
   bool double_sided = false;
   bool lambert = false;                  // Lambert of the base colour instead of metallic-roughness
+  bool geometric_horizon = false;        // no light from below a triangle's horizon, whatever the vertex normals see
   bool constant_base_color = false;      // neither texture nor vertex colour changes the base colour; alpha still does
   bool unlit = false;                    // KHR_materials_unlit: seen as its base colour, and no part of light transport
   std::optional<MaterialLayers> layers;  // absent: plain metallic-roughness

@@ -20,13 +20,14 @@ Bsdf::Bsdf(const SurfacePoint& point)
       turned_(!(point.smooth_normal == point.shading_normal)),
       base_color_(point.unlit ? Vec3f{} : point.base_color),
       lambert_(point.lambert || point.unlit),
+      geometric_horizon_(point.geometric_horizon),
       base_(point) {
   if (has_layers(point)) layers_.emplace(Layers{BsdfSheen(point), BsdfClearcoat(point)});
 }
 
 bool Bsdf::sees(Vec3f direction, float local_z) const {
   if (sides_agree(direction, local_z)) return true;
-  return !transmits() && local_z > 0 && dot(direction, smooth_normal_) > 0;
+  return !geometric_horizon_ && !transmits() && local_z > 0 && dot(direction, smooth_normal_) > 0;
 }
 
 Bsdf::Sketch Bsdf::sketch() const {

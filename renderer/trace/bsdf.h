@@ -68,6 +68,7 @@ class Bsdf {
   bool turned_;  // the shading normal is another one
   Vec3f base_color_;
   bool lambert_;
+  bool geometric_horizon_;
   BsdfBase base_;
   std::optional<Layers> layers_;  // absent: neither sheen nor clearcoat
 };

@@ -297,7 +297,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const auto on_side = [&](Vec3f n) { return dot(n, point.geometric_normal) < 0 ? -n : n; };
   point.smooth_normal = on_side(normals.smooth);
   point.shading_normal = bend_for_reflection(on_side(normals.mapped), to_viewer, point.geometric_normal);
-  if (dot(point.smooth_normal, point.geometric_normal) < kFlat) {
+  point.geometric_horizon = material.geometric_horizon;
+  if (!material.geometric_horizon && dot(point.smooth_normal, point.geometric_normal) < kFlat) {
     const float smooth_side = dot(normals.smooth, point.geometric_normal) < 0 ? -1.0F : 1.0F;
     point.lift = transform_direction(instance.world_from_object, lift_to_smooth(at, smooth_side));
   }

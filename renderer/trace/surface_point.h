@@ -34,7 +34,8 @@ struct SurfacePoint {
   float metallic = 0, roughness = 1;
   Vec3f emission;  // cd/m², from both sides; of an unlit surface, what a camera sees
   bool lambert = false;
-  bool front = true;  // the ray came from the front face
+  bool geometric_horizon = false;  // as Material's
+  bool front = true;               // the ray came from the front face
   bool unlit = false;
   int material = 0;                     // index into Scene::materials
   std::optional<SurfaceLayers> layers;  // absent: Lambert or plain metallic-roughness

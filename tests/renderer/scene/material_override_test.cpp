@@ -1,0 +1,51 @@
+#include "renderer/scene/material_override.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/trace/render.h"
+#include "tests/support/code_scenes.h"
+
+namespace chiaro::renderer {
+namespace {
+
+TEST(MaterialOverride, DiffuseFiltersTexturesAsStoredAndEndsLightAtTheTrianglesHorizon) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.textures.push_back({"", 1, 1, {0, 0, 0, 255}});
+  const Scene same = with_materials(scene, {});
+  EXPECT_FALSE(same.textures[0].filtered_as_stored);
+  EXPECT_FALSE(same.materials[0].geometric_horizon);
+  const Scene diffuse = with_materials(scene, {.model = MaterialModel::kDiffuse, .albedo = {}});
+  EXPECT_TRUE(diffuse.textures[0].filtered_as_stored);
+  EXPECT_TRUE(diffuse.materials[0].geometric_horizon);
+}
+
+TEST(MaterialOverride, GeometricHorizonKeepsLightFromBelowTheTriangleOut) {
+  // A triangle whose vertex normals lean by 45° towards a light that stands 10° below its plane.
+  const auto seen = [](bool geometric_horizon) {
+    Scene scene;
+    Material material = test::lambert({1, 1, 1});
+    material.geometric_horizon = geometric_horizon;
+    test::add_mesh(scene, test::rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), material, "plane");
+    for (Vec3f& n : scene.meshes[0].normals) n = normalize(Vec3f{1, 1, 0});
+    const RayTracer tracer(scene);
+    const Vec3f to_light = normalize(Vec3f{1, -std::tan(10 * kPi / 180), 0});
+    Camera camera;
+    camera.world_from_camera = Mat4f{};
+    const Vec3f columns[4] = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0.5F, 3, 0}};
+    for (int c = 0; c < 4; ++c) {
+      for (int row = 0; row < 3; ++row) camera.world_from_camera(row, c) = columns[c][row];
+    }
+    camera.vertical_fov = 0.1F;
+    RenderOptions options;
+    options.width = options.height = 4;
+    options.trace = {.samples = 4, .bounces = 0};
+    const Image image = render(tracer, camera, {DirectionalLight{"", -to_light, {100, 100, 100}}}, options).image;
+    return image.at(2, 2)[0];
+  };
+  EXPECT_GT(seen(false), 1);
+  EXPECT_EQ(seen(true), 0);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
