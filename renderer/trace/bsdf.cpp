@@ -19,9 +19,8 @@ Bsdf::Bsdf(const SurfacePoint& point)
       smooth_normal_(point.smooth_normal),
       turned_(!(point.smooth_normal == point.shading_normal)),
       base_color_(point.unlit ? Vec3f{} : point.base_color),
-      lambert_(point.lambert || point.unlit),
-      geometric_horizon_(point.geometric_horizon),
-      base_(point) {
+      geometric_horizon_(point.geometric_horizon) {
+  if (!point.lambert && !point.unlit) base_.emplace(point);
   if (has_layers(point)) layers_.emplace(Layers{BsdfSheen(point), BsdfClearcoat(point)});
 }
 
@@ -32,9 +31,9 @@ bool Bsdf::sees(Vec3f direction, float local_z) const {
 
 Bsdf::Sketch Bsdf::sketch() const {
   const float color = max_component(base_color_);
-  if (lambert_) return {color, 0, 1};
-  if (base_.transmits()) return {};
-  Sketch sketch = base_.sketch();
+  if (!base_) return {color, 0, 1};
+  if (base_->transmits()) return {};
+  Sketch sketch = base_->sketch();
   if (layers_) {
     sketch.diffuse += layers_->sheen.albedo(1);
     if (layers_->clearcoat.present()) sketch.specular += layers_->clearcoat.albedo(frame_.normal);
@@ -58,8 +57,8 @@ float Bsdf::below_layers(Vec3f to_viewer, Vec3f to_light) const {
 Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
   if (wo.z <= 0 || !sees(to_light, wi.z)) return {};
-  if (lambert_) return wi.z > 0 ? (shadow_terminator(to_light) * wi.z * kInvPi) * base_color_ : Vec3f{};
-  Vec3f value = base_.eval(wo, wi, source, wi.z > 0 ? shadow_terminator(to_light) : 1);
+  if (!base_) return wi.z > 0 ? (shadow_terminator(to_light) * wi.z * kInvPi) * base_color_ : Vec3f{};
+  Vec3f value = base_->eval(wo, wi, source, wi.z > 0 ? shadow_terminator(to_light) : 1);
   if (!layers_) return value;
   value *= below_layers(to_viewer, to_light);
   if (layers_->sheen.present()) value += layers_->clearcoat.below(to_viewer, to_light) * layers_->sheen.eval(wo, wi);
@@ -71,7 +70,7 @@ Bsdf::Choice Bsdf::choice(Vec3f to_viewer, Vec3f wo) const {
   if (!layers_) return {};
   const float coat = layers_->clearcoat.present() ? layers_->clearcoat.albedo(to_viewer) : 0;
   const float sheen = (1 - coat) * layers_->sheen.albedo(wo.z);
-  const float base = (1 - coat - sheen) * base_.albedo(wo);
+  const float base = (1 - coat - sheen) * base_->albedo(wo);
   const float total = coat + sheen + base;
   return total > 0 ? Choice{coat / total, sheen / total} : Choice{};
 }
@@ -79,9 +78,9 @@ Bsdf::Choice Bsdf::choice(Vec3f to_viewer, Vec3f wo) const {
 float Bsdf::pdf(Vec3f to_viewer, Vec3f to_light) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
   if (wo.z <= 0 || !sides_agree(to_light, wi.z)) return 0;
-  if (lambert_) return wi.z > 0 ? wi.z * kInvPi : 0;
+  if (!base_) return wi.z > 0 ? wi.z * kInvPi : 0;
   const Choice p = choice(to_viewer, wo);
-  float pdf = p.base() * base_.pdf(wo, wi);
+  float pdf = p.base() * base_->pdf(wo, wi);
   if (p.sheen > 0) pdf += p.sheen * BsdfSheen::pdf(wi);
   if (p.clearcoat > 0) pdf += p.clearcoat * layers_->clearcoat.pdf(to_viewer, to_light);
   return pdf;
@@ -103,7 +102,7 @@ Bsdf::Sample Bsdf::straight_sample(Vec3f to_viewer, float probability) const {
 std::optional<Bsdf::Sample> Bsdf::sample(Vec3f to_viewer, Vec2f u, float lobe) const {
   const Vec3f wo = frame_.local_from_world(to_viewer);
   if (wo.z <= 0) return std::nullopt;
-  if (lambert_) return sample_lambert(u);
+  if (!base_) return sample_lambert(u);
   const Choice p = choice(to_viewer, wo);
   Sample s;
   if (lobe < p.clearcoat) {
@@ -114,7 +113,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(Vec3f to_viewer, Vec2f u, float lobe) c
   } else if (lobe < p.clearcoat + p.sheen) {
     s.direction = normalize(frame_.world_from_local(BsdfSheen::sample(u)));
   } else {
-    const auto below = base_.sample(wo, u, std::min((lobe - p.clearcoat - p.sheen) / p.base(), 1 - 0x1p-24F));
+    const auto below = base_->sample(wo, u, std::min((lobe - p.clearcoat - p.sheen) / p.base(), 1 - 0x1p-24F));
     if (!below) return std::nullopt;
     if (below->straight) return straight_sample(to_viewer, p.base() * below->probability);
     s.direction = normalize(frame_.world_from_local(below->direction));
@@ -129,13 +128,13 @@ std::optional<Bsdf::Sample> Bsdf::sample(Vec3f to_viewer, Vec2f u, float lobe) c
 Vec3f Bsdf::straight(Vec3f to_viewer) const {
   if (!transmits()) return {};
   const Vec3f wo = frame_.local_from_world(to_viewer);
-  return wo.z > 0 ? below_layers(to_viewer, -to_viewer) * base_.straight(wo) : Vec3f{};
+  return wo.z > 0 ? below_layers(to_viewer, -to_viewer) * base_->straight(wo) : Vec3f{};
 }
 
 Vec3f Bsdf::clear(Vec3f to_viewer) const {
   if (!transmits()) return {};
   const Vec3f wo = frame_.local_from_world(to_viewer);
-  return wo.z > 0 ? below_layers(to_viewer, -to_viewer) * base_.clear(wo) : Vec3f{};
+  return wo.z > 0 ? below_layers(to_viewer, -to_viewer) * base_->clear(wo) : Vec3f{};
 }
 
 Vec3f hemispherical_albedo(const SurfacePoint& point) {

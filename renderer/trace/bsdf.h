@@ -42,7 +42,7 @@ class Bsdf {
   // Part that shadow rays of punctual lights bring through a clear sheet or the clear boundary of a solid.
   Vec3f clear(Vec3f to_viewer) const;
 
-  bool transmits() const { return !lambert_ && base_.transmits(); }
+  bool transmits() const { return base_ && base_->transmits(); }
 
  private:
   struct Layers {
@@ -67,9 +67,8 @@ class Bsdf {
   Vec3f smooth_normal_;
   bool turned_;  // the shading normal is another one
   Vec3f base_color_;
-  bool lambert_;
   bool geometric_horizon_;
-  BsdfBase base_;
+  std::optional<BsdfBase> base_;  // absent: Lambert
   std::optional<Layers> layers_;  // absent: neither sheen nor clearcoat
 };
 

@@ -24,39 +24,49 @@ struct GeometryUser {
 
 // A hit that may be one, as a filter is shown it.
 struct Candidate {
+  const RTCFilterFunctionNArguments& arguments;
   const Scene& scene;
   const Mesh& mesh;
   const Material& material;
   std::uint32_t triangle;
   float u, v;
-  std::uint32_t seed;  // of the ray and the triangle
-  float cosine;        // between the ray and the triangle's normal, either side
 };
 
-Candidate candidate(const RTCFilterFunctionNArguments* arguments) {
-  const auto& user = *static_cast<const GeometryUser*>(arguments->geometryUserPtr);
-  const auto& context = *reinterpret_cast<const RayContext*>(arguments->context);
-  RTCHitN* hit = arguments->hit;
-  const std::uint32_t triangle = RTCHitN_primID(hit, 1, 0);
-  const std::uint32_t surface = hash_combine(RTCHitN_geomID(hit, 1, 0), RTCHitN_instID(hit, 1, 0, 0));
-  const Vec3f normal{RTCHitN_Ng_x(hit, 1, 0), RTCHitN_Ng_y(hit, 1, 0), RTCHitN_Ng_z(hit, 1, 0)};
-  RTCRayN* ray = arguments->ray;
-  const Vec3f direction{RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)};
-  return {*user.scene,
+Candidate candidate(const RTCFilterFunctionNArguments& arguments) {
+  const auto& user = *static_cast<const GeometryUser*>(arguments.geometryUserPtr);
+  RTCHitN* hit = arguments.hit;
+  return {arguments,
+          *user.scene,
           *user.mesh,
           user.scene->materials[user.mesh->material],
-          triangle,
+          RTCHitN_primID(hit, 1, 0),
           RTCHitN_u(hit, 1, 0),
-          RTCHitN_v(hit, 1, 0),
-          hash_combine(hash_combine(context.alpha_seed, triangle), surface),
-          std::abs(dot(normal, direction)) / std::sqrt(length_squared(normal) * length_squared(direction))};
+          RTCHitN_v(hit, 1, 0)};
+}
+
+const RayContext& context_of(const Candidate& c) { return *reinterpret_cast<const RayContext*>(c.arguments.context); }
+
+// Of the ray and the triangle.
+std::uint32_t seed_of(const Candidate& c) {
+  RTCHitN* hit = c.arguments.hit;
+  const std::uint32_t surface = hash_combine(RTCHitN_geomID(hit, 1, 0), RTCHitN_instID(hit, 1, 0, 0));
+  return hash_combine(hash_combine(context_of(c).alpha_seed, c.triangle), surface);
+}
+
+// Between the ray and the triangle's normal, either side.
+float cosine_of(const Candidate& c) {
+  RTCHitN* hit = c.arguments.hit;
+  RTCRayN* ray = c.arguments.ray;
+  const Vec3f normal{RTCHitN_Ng_x(hit, 1, 0), RTCHitN_Ng_y(hit, 1, 0), RTCHitN_Ng_z(hit, 1, 0)};
+  const Vec3f direction{RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)};
+  return std::abs(dot(normal, direction)) / std::sqrt(length_squared(normal) * length_squared(direction));
 }
 
 // Alpha mask and blend: a hit that the alpha does not hold is passed through.
 bool alpha_holds(const Candidate& c) {
   if (c.material.alpha_mode == AlphaMode::kOpaque) return true;
   const float alpha = surface_alpha(c.scene, c.mesh, c.triangle, c.u, c.v);
-  if (c.material.alpha_mode == AlphaMode::kBlend) return unit_float(c.seed) < alpha;
+  if (c.material.alpha_mode == AlphaMode::kBlend) return unit_float(seed_of(c)) < alpha;
   return alpha >= c.material.alpha_cutoff;
 }
 
@@ -65,13 +75,14 @@ bool passes_clear(const Candidate& c, ClearSurfaces clear) {
   if (clear == ClearSurfaces::kPassThin && c.material.layers->solid) return false;
   if (!surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v)) return false;
   if (clear != ClearSurfaces::kPassByChance) return true;
-  return unit_float(hash_combine(c.seed, 1)) < clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, c.cosine);
+  const float through = clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, cosine_of(c));
+  return unit_float(hash_combine(seed_of(c), 1)) < through;
 }
 
 void filter_surface(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->valid[0] != -1) return;
   auto& context = *reinterpret_cast<RayContext*>(arguments->context);
-  const Candidate c = candidate(arguments);
+  const Candidate c = candidate(*arguments);
   if (!alpha_holds(c) || (c.material.unlit && !context.sees_unlit)) {
     arguments->valid[0] = 0;
   } else if (passes_clear(c, context.clear)) {
