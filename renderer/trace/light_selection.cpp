@@ -49,6 +49,72 @@ std::vector<LightBounds> bounds_of(const Lights& lights) {
 // The zero vector stands for a surface that all sides matter of.
 bool any_side(Vec3f normal) { return !(length_squared(normal) > 0); }
 
+float least_cosine(Vec3f normal) { return any_side(normal) ? 1.0F : 0.0F; }
+
+struct NoResponse {
+  [[gnu::always_inline]] float operator()(Vec3f, float) const { return 1; }
+};
+
+// Lambert, and GGX with Schlick's Fresnel and without most of its shadowing.
+class SketchResponse {
+ public:
+  SketchResponse(Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface)
+      : normal_(normal),
+        to_viewer_(to_viewer),
+        diffuse_(std::max(surface.diffuse, kLeastDiffuse) * kInvPi),
+        a2_(surface.alpha * surface.alpha),
+        f0_(surface.specular),
+        cosine_viewer_(std::max(dot(normal, to_viewer), kLeastCosine)) {}
+
+  [[gnu::always_inline]] float operator()(Vec3f to_light, float cosine) const {
+    const Vec3f sum = to_viewer_ + to_light;
+    const float scale = 1 / std::sqrt(std::max(dot(sum, sum), 1e-12F));
+    const float n_h = std::min(scale * dot(normal_, sum), 1.0F), v_h = std::min(scale * dot(to_viewer_, sum), 1.0F);
+    const float t = n_h * n_h * (a2_ - 1) + 1, distribution = a2_ * kInvPi / std::max(t * t, 1e-20F);
+    const float away = 1 - v_h, fresnel = f0_ + (1 - f0_) * (away * away) * (away * away) * away;
+    return diffuse_ + 0.25F * distribution * fresnel / (cosine_viewer_ * std::max(cosine, kLeastCosine));
+  }
+
+ private:
+  static constexpr float kLeastDiffuse = 0.02F, kLeastCosine = 0.1F;
+  Vec3f normal_, to_viewer_;
+  float diffuse_, a2_, f0_, cosine_viewer_;
+};
+
+struct Place {
+  Vec3f point, normal;
+};
+
+// Irradiance as sample_punctual has it, times response(direction to the light, its cosine).
+template <class Response>
+[[gnu::always_inline]] inline void weigh_lanes_by(const std::vector<LightLanes>& lanes, const Place& at,
+                                                  const Response& response, float* out) {
+  constexpr float kLargest = 1e30F;
+  const Vec3f p = at.point, n = at.normal;
+  const float least = least_cosine(n);
+  for (const LightLanes& l : lanes) {
+    for (std::size_t k = 0; k < LightLanes::kCount; ++k) {
+      const Vec3f d{l.x[k] - p.x, l.y[k] - p.y, l.z[k] - p.z};
+      const float scale = 1 / std::sqrt(std::max(dot(d, d), 1e-30F));
+      const float cosine = std::max(least, scale * dot(n, d));
+      const float from_axis = -scale * (l.axis_x[k] * d.x + l.axis_y[k] * d.y + l.axis_z[k] * d.z);
+      const float fall = std::min(1.0F, std::max(0.0F, (from_axis - l.cos_outer[k]) * l.fall[k]));
+      const float irradiance = l.intensity[k] * cosine * (scale * scale) * (fall * fall);
+      out[k] = std::min(irradiance * response(scale * d, cosine), kLargest);
+    }
+    out += LightLanes::kCount;
+  }
+}
+
+CHIARO_DISPATCH void weigh_lanes(const std::vector<LightLanes>& lanes, const Place& at, float* out) {
+  weigh_lanes_by(lanes, at, NoResponse{}, out);
+}
+
+CHIARO_DISPATCH void weigh_lanes(const std::vector<LightLanes>& lanes, const Place& at, const SketchResponse& response,
+                                 float* out) {
+  weigh_lanes_by(lanes, at, response, out);
+}
+
 }  // namespace
 
 LightSelection::LightSelection(const Lights& lights) : lights_(lights), place_(lights.size(), 0) {
@@ -71,7 +137,7 @@ LightSelection::LightSelection(const Lights& lights) : lights_(lights), place_(l
   }
 }
 
-void LightSelection::set_lane(const Light& light, std::size_t lane, Lanes& lanes) {
+void LightSelection::set_lane(const Light& light, std::size_t lane, LightLanes& lanes) {
   const auto* spot = std::get_if<SpotLight>(&light);
   const auto* point = std::get_if<PointLight>(&light);
   const Vec3f at = spot != nullptr ? spot->position : point->position;
@@ -85,30 +151,8 @@ void LightSelection::set_lane(const Light& light, std::size_t lane, Lanes& lanes
   lanes.intensity[lane] = max_component(spot != nullptr ? spot->intensity : point->intensity);
 }
 
-// Irradiance as sample_punctual has it, times response(direction to the light, its cosine).
-template <class Response>
-[[gnu::always_inline]] inline void LightSelection::weigh_by(Vec3f p, Vec3f n, const Response& response,
-                                                            Weights& weights) const {
-  constexpr float kLargest = 1e30F;
-  const float least_cosine = any_side(n) ? 1.0F : 0.0F;
-  for (std::size_t group = 0; group < lanes_.size(); ++group) {
-    const Lanes& l = lanes_[group];
-    float* out = &weights.of_light[group * kLanes];
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const Vec3f d{l.x[k] - p.x, l.y[k] - p.y, l.z[k] - p.z};
-      const float scale = 1 / std::sqrt(std::max(dot(d, d), 1e-30F));
-      const float cosine = std::max(least_cosine, scale * dot(n, d));
-      const float from_axis = -scale * (l.axis_x[k] * d.x + l.axis_y[k] * d.y + l.axis_z[k] * d.z);
-      const float fall = std::min(1.0F, std::max(0.0F, (from_axis - l.cos_outer[k]) * l.fall[k]));
-      const float irradiance = l.intensity[k] * cosine * (scale * scale) * (fall * fall);
-      out[k] = std::min(irradiance * response(scale * d, cosine), kLargest);
-    }
-  }
-  for (std::size_t k = placed_; k < groups_ * kLanes; ++k) weights.of_light[k] = 0;
-  for (std::size_t k = placed_; k < order_.size(); ++k) {
-    const Vec3f to_light = sample_punctual(lights_[order_[k]], p).to_light;
-    weights.of_light[k] = distant_weight(order_[k], n) * response(to_light, std::max(least_cosine, dot(n, to_light)));
-  }
+// Every light's weight is there; the sums are not.
+void LightSelection::sum_groups(Weights& weights) const {
   weights.total = 0;
   for (std::size_t group = 0; group < groups_; ++group) {
     const float* w = &weights.of_light[group * kLanes];
@@ -117,9 +161,29 @@ template <class Response>
   }
 }
 
-CHIARO_DISPATCH void LightSelection::weigh(Vec3f point, Vec3f normal, Weights& weights) const {
-  weigh_by(
-      point, normal, [](Vec3f, float) __attribute__((always_inline)) { return 1.0F; }, weights);
+template <class Response>
+void LightSelection::weigh_distant(Vec3f p, Vec3f n, const Response& response, Weights& weights) const {
+  for (std::size_t k = placed_; k < groups_ * kLanes; ++k) weights.of_light[k] = 0;
+  for (std::size_t k = placed_; k < order_.size(); ++k) {
+    const Vec3f to_light = sample_punctual(lights_[order_[k]], p).to_light;
+    weights.of_light[k] =
+        distant_weight(order_[k], n) * response(to_light, std::max(least_cosine(n), dot(n, to_light)));
+  }
+}
+
+void LightSelection::weigh(Vec3f point, Vec3f normal, Weights& weights) const {
+  weigh_lanes(lanes_, {point, normal}, weights.of_light.data());
+  weigh_distant(point, normal, NoResponse{}, weights);
+  sum_groups(weights);
+}
+
+void LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface,
+                           Weights& weights) const {
+  if (surface.specular <= 0) return weigh(point, normal, weights);
+  const SketchResponse response(normal, to_viewer, surface);
+  weigh_lanes(lanes_, {point, normal}, response, weights.of_light.data());
+  weigh_distant(point, normal, response, weights);
+  sum_groups(weights);
 }
 
 LightSelection::Pick LightSelection::Walk::find(double at) {
@@ -141,28 +205,9 @@ LightSelection::Pick LightSelection::Walk::find(double at) {
   return last;
 }
 
-// Lambert, and GGX with Schlick's Fresnel and without most of its shadowing.
-CHIARO_DISPATCH void LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface,
-                                           Weights& weights) const {
-  constexpr float kLeastDiffuse = 0.02F, kLeastCosine = 0.1F;
-  if (surface.specular <= 0) return weigh(point, normal, weights);
-  const float diffuse = std::max(surface.diffuse, kLeastDiffuse) * kInvPi;
-  const float a2 = surface.alpha * surface.alpha, f0 = surface.specular;
-  const float cosine_viewer = std::max(dot(normal, to_viewer), kLeastCosine);
-  const auto response = [&](Vec3f to_light, float cosine) __attribute__((always_inline)) {
-    const Vec3f sum = to_viewer + to_light;
-    const float scale = 1 / std::sqrt(std::max(dot(sum, sum), 1e-12F));
-    const float n_h = std::min(scale * dot(normal, sum), 1.0F), v_h = std::min(scale * dot(to_viewer, sum), 1.0F);
-    const float t = n_h * n_h * (a2 - 1) + 1, distribution = a2 * kInvPi / std::max(t * t, 1e-20F);
-    const float away = 1 - v_h, fresnel = f0 + (1 - f0) * (away * away) * (away * away) * away;
-    return diffuse + 0.25F * distribution * fresnel / (cosine_viewer * std::max(cosine, kLeastCosine));
-  };
-  weigh_by(point, normal, response, weights);
-}
-
 float LightSelection::distant_weight(std::size_t light, Vec3f normal) const {
   const PunctualSample s = sample_punctual(lights_[light], {});
-  return std::max(any_side(normal) ? 1.0F : 0.0F, dot(normal, s.to_light)) * max_component(s.irradiance);
+  return std::max(least_cosine(normal), dot(normal, s.to_light)) * max_component(s.irradiance);
 }
 
 LightSelection::Pick LightSelection::pick(Vec3f point, Vec3f normal, double u) const {

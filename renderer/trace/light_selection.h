@@ -12,6 +12,14 @@
 
 namespace chiaro::renderer {
 
+// Point and spot lights side by side, so that a group is weighed at once.
+struct LightLanes {
+  static constexpr std::size_t kCount = 8;
+  float x[kCount], y[kCount], z[kCount], intensity[kCount];
+  float axis_x[kCount], axis_y[kCount], axis_z[kCount];  // zero: sends all ways
+  float cos_outer[kCount], fall[kCount];                 // of spots: 1 / (cos inner − cos outer)
+};
+
 // In proportion to the irradiance that a light would give if nothing stood between: exactly that among up to some
 // hundred lights, as a light tree bounds it among more. Environments are left to EnvironmentSampling.
 class LightSelection {
@@ -37,7 +45,7 @@ class LightSelection {
   float probability(std::size_t light, Vec3f point, Vec3f normal) const;
 
   // What lights would bring to a point, one by one, and in groups.
-  static constexpr std::size_t kLanes = 8;
+  static constexpr std::size_t kLanes = LightLanes::kCount;
   struct Weights {
     std::array<float, kWeighed + kLanes> of_light;  // in the order of lights_in_order(), padded with zeros
     std::array<float, kWeighed / kLanes + 1> of_group;
@@ -63,15 +71,10 @@ class LightSelection {
   };
 
  private:
-  // Lights side by side, so that a group is weighed at once. Those at infinity come last, by themselves.
-  struct Lanes {
-    float x[kLanes], y[kLanes], z[kLanes], intensity[kLanes];
-    float axis_x[kLanes], axis_y[kLanes], axis_z[kLanes];  // zero: sends all ways
-    float cos_outer[kLanes], fall[kLanes];                 // of spots: 1 / (cos inner − cos outer)
-  };
-  static void set_lane(const Light& light, std::size_t lane, Lanes& lanes);
+  static void set_lane(const Light& light, std::size_t lane, LightLanes& lanes);
   template <class Response>
-  void weigh_by(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
+  void weigh_distant(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
+  void sum_groups(Weights& weights) const;
   float distant_weight(std::size_t light, Vec3f normal) const;
   Pick pick_from_tree(Vec3f point, Vec3f normal, double u) const;
 
@@ -80,7 +83,7 @@ class LightSelection {
   std::vector<std::size_t> place_;  // per light, in order_
   std::size_t placed_ = 0;          // lights with a position
   std::size_t groups_ = 0;
-  std::vector<Lanes> lanes_;
+  std::vector<LightLanes> lanes_;  // of those with a position
   LightTree tree_;
 };
 

@@ -40,7 +40,7 @@ int add_animation(GltfBuilder& gltf, const std::vector<Channel>& channels, const
 
 LoadedScene load(const GltfBuilder& gltf, std::optional<double> seconds, const std::string& animation = "") {
   const TemporaryFolder folder;
-  return load_gltf(folder.write("scene.glb", gltf.glb()), {.animation = {animation, seconds}});
+  return load_gltf(folder.write("scene.glb", gltf.glb()), {.animation = {animation, seconds}, .variant = {}});
 }
 
 Mat4f placed(const GltfBuilder& gltf, std::optional<double> seconds, const std::string& animation = "") {

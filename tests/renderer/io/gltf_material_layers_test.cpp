@@ -176,7 +176,7 @@ GltfBuilder scene_with_variants() {
 
 TEST(GltfVariants, ChooseThePrimitivesMaterials) {
   const auto shown = [](const char* variant) {
-    const Scene scene = load(scene_with_variants(), {.variant = variant}).scene;
+    const Scene scene = load(scene_with_variants(), {.animation = {}, .variant = variant}).scene;
     return scene.materials.at(std::size_t(scene.meshes.at(0).material)).name;
   };
   EXPECT_EQ(shown(""), "own");
@@ -187,10 +187,10 @@ TEST(GltfVariants, ChooseThePrimitivesMaterials) {
 }
 
 TEST(GltfVariants, UnknownOnesAreRefusedWithTheNames) {
-  const std::string message = error_of([] { load(scene_with_variants(), {.variant = "dusk"}); });
+  const std::string message = error_of([] { load(scene_with_variants(), {.animation = {}, .variant = "dusk"}); });
   EXPECT_NE(message.find("\"dusk\""), std::string::npos) << message;
   EXPECT_NE(message.find("one of: morning, noon, night"), std::string::npos) << message;
-  EXPECT_NE(error_of([] { load(triangle_scene(), {.variant = "dusk"}); }), "");
+  EXPECT_NE(error_of([] { load(triangle_scene(), {.animation = {}, .variant = "dusk"}); }), "");
 }
 
 struct BadMaterial {
