@@ -59,9 +59,15 @@ std::vector<std::vector<Mat4f>> transforms_of_skins(const GltfDocument& document
   return skins;
 }
 
+// Of the base layer, or of a clearcoat alone.
+const TextureUse& normal_map_of(const Material& material) {
+  const bool of_coat = material.normal_texture.texture < 0 && material.layers;
+  return of_coat ? material.layers->clearcoat_normal_texture : material.normal_texture;
+}
+
 void make_missing_tangents(const Scene& scene, Mesh& mesh) {
   if (mesh.material < 0 || !mesh.tangents.empty()) return;
-  const TextureUse& normal_map = scene.materials[std::size_t(mesh.material)].normal_texture;
+  const TextureUse& normal_map = normal_map_of(scene.materials[std::size_t(mesh.material)]);
   if (normal_map.texture < 0 || mesh.uv[std::size_t(normal_map.uv_set)].empty()) return;
   make_tangents(mesh, normal_map.uv_set);
 }
