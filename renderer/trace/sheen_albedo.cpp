@@ -1,13 +1,12 @@
 #include "renderer/trace/sheen_albedo.h"
 
-#include <array>
-
 #include "renderer/core/sampler.h"
+#include "renderer/trace/albedo_table.h"
 
 namespace chiaro::renderer {
 namespace {
 
-constexpr int kSize = 32;  // steps in the cosine, and in the square root of alpha
+constexpr int kSize = kAlbedoTableSize;
 constexpr int kRings = 48, kSectors = 48;
 
 // The fit of Λ, between its tables for a roughness of 0 and of 1.
@@ -41,13 +40,8 @@ float integrate(float cosine, float alpha) {
   return float(sum * 2 * M_PI / (kRings * kSectors));
 }
 
-struct Table {
-  std::array<std::array<float, kSize>, kSize> directional;  // [roughness][cosine]
-  std::array<float, kSize> mean;                            // [roughness]
-};
-
-Table make_table() {
-  Table table;
+AlbedoTable<float> make_table() {
+  AlbedoTable<float> table;
   for (int r = 0; r < kSize; ++r) {
     const float roughness = float(r) / (kSize - 1);
     float sum = 0, total = 0;
@@ -62,23 +56,10 @@ Table make_table() {
   return table;
 }
 
-const Table& table() {
-  static const Table made = make_table();
+const AlbedoTable<float>& table() {
+  static const AlbedoTable<float> made = make_table();
   return made;
 }
-
-struct Place {
-  int low;
-  float t;
-};
-
-Place place(float x) {
-  const float at = std::clamp(x, 0.0F, 1.0F) * (kSize - 1);
-  const int low = std::min(int(at), kSize - 2);
-  return {low, at - float(low)};
-}
-
-float mix(float t, float a, float b) { return (1 - t) * a + t * b; }
 
 }  // namespace
 
@@ -91,16 +72,8 @@ float sheen_value(float cosine_h, float cosine_o, float cosine_i, float alpha) {
   return d / std::max(1e-6F, shadowing * 4 * cosine_o * cosine_i);
 }
 
-float sheen_albedo(float cosine, float alpha) {
-  const Place r = place(std::sqrt(alpha)), c = place(cosine);
-  const auto& low = table().directional[r.low];
-  const auto& high = table().directional[r.low + 1];
-  return mix(r.t, mix(c.t, low[c.low], low[c.low + 1]), mix(c.t, high[c.low], high[c.low + 1]));
-}
+float sheen_albedo(float cosine, float alpha) { return table().at(cosine, alpha); }
 
-float mean_sheen_albedo(float alpha) {
-  const Place r = place(std::sqrt(alpha));
-  return mix(r.t, table().mean[r.low], table().mean[r.low + 1]);
-}
+float mean_sheen_albedo(float alpha) { return table().mean_at(alpha); }
 
 }  // namespace chiaro::renderer

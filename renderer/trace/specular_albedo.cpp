@@ -1,20 +1,20 @@
 #include "renderer/trace/specular_albedo.h"
 
-#include <array>
-
 #include "renderer/core/sampler.h"
+#include "renderer/trace/albedo_table.h"
 #include "renderer/trace/ggx.h"
 
 namespace chiaro::renderer {
+
+// Found by the table, by the type of its arguments.
+static SpecularAlbedo mix(float t, SpecularAlbedo a, SpecularAlbedo b) {
+  return {(1 - t) * a.scale + t * b.scale, (1 - t) * a.bias + t * b.bias};
+}
+
 namespace {
 
-constexpr int kSize = 32;  // steps in the cosine, and in the square root of alpha (the perceived roughness)
+constexpr int kSize = kAlbedoTableSize;
 constexpr int kSamples = 256;
-
-struct Table {
-  std::array<std::array<SpecularAlbedo, kSize>, kSize> directional;  // [roughness][cosine]
-  std::array<SpecularAlbedo, kSize> mean;                            // [roughness]
-};
 
 SpecularAlbedo integrate(float cosine, float alpha) {
   const Vec3f wo{std::sqrt(1 - cosine * cosine), 0, cosine};
@@ -35,8 +35,8 @@ SpecularAlbedo integrate(float cosine, float alpha) {
 
 float cosine_of(int i) { return std::max(1e-3F, float(i) / (kSize - 1)); }
 
-Table make_table() {
-  Table table;
+AlbedoTable<SpecularAlbedo> make_table() {
+  AlbedoTable<SpecularAlbedo> table;
   for (int r = 0; r < kSize; ++r) {
     const float roughness = std::max(0.03F, float(r) / (kSize - 1));
     for (int c = 0; c < kSize; ++c) table.directional[r][c] = integrate(cosine_of(c), roughness * roughness);
@@ -53,38 +53,15 @@ Table make_table() {
   return table;
 }
 
-const Table& table() {
-  static const Table made = make_table();
+const AlbedoTable<SpecularAlbedo>& table() {
+  static const AlbedoTable<SpecularAlbedo> made = make_table();
   return made;
-}
-
-struct Place {
-  int low;
-  float t;
-};
-
-Place place(float x) {
-  const float at = std::clamp(x, 0.0F, 1.0F) * (kSize - 1);
-  const int low = std::min(int(at), kSize - 2);
-  return {low, at - float(low)};
-}
-
-SpecularAlbedo mix(float t, SpecularAlbedo a, SpecularAlbedo b) {
-  return {(1 - t) * a.scale + t * b.scale, (1 - t) * a.bias + t * b.bias};
 }
 
 }  // namespace
 
-SpecularAlbedo specular_albedo(float cosine, float alpha) {
-  const Place r = place(std::sqrt(alpha)), c = place(cosine);
-  const auto& low = table().directional[r.low];
-  const auto& high = table().directional[r.low + 1];
-  return mix(r.t, mix(c.t, low[c.low], low[c.low + 1]), mix(c.t, high[c.low], high[c.low + 1]));
-}
+SpecularAlbedo specular_albedo(float cosine, float alpha) { return table().at(cosine, alpha); }
 
-SpecularAlbedo mean_specular_albedo(float alpha) {
-  const Place r = place(std::sqrt(alpha));
-  return mix(r.t, table().mean[r.low], table().mean[r.low + 1]);
-}
+SpecularAlbedo mean_specular_albedo(float alpha) { return table().mean_at(alpha); }
 
 }  // namespace chiaro::renderer

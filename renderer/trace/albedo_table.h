@@ -1,0 +1,43 @@
+#pragma once
+// Albedos of a lobe by the cosine of the viewer and by roughness, interpolated linearly.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace chiaro::renderer {
+
+inline constexpr int kAlbedoTableSize = 32;  // steps in the cosine, and in the square root of alpha
+
+inline float mix(float t, float a, float b) { return (1 - t) * a + t * b; }
+
+// Albedo: a float, or a struct of floats for which mix(t, a, b) is declared beside it.
+template <class Albedo>
+struct AlbedoTable {
+  static constexpr int kSize = kAlbedoTableSize;
+  std::array<std::array<Albedo, kSize>, kSize> directional;  // [roughness][cosine]
+  std::array<Albedo, kSize> mean;                            // [roughness], of cosine-weighted viewers
+
+  Albedo at(float cosine, float alpha) const {
+    const Place r = place(std::sqrt(alpha)), c = place(cosine);
+    const auto &low = directional[r.low], &high = directional[r.low + 1];
+    return mix(r.t, mix(c.t, low[c.low], low[c.low + 1]), mix(c.t, high[c.low], high[c.low + 1]));
+  }
+  Albedo mean_at(float alpha) const {
+    const Place r = place(std::sqrt(alpha));
+    return mix(r.t, mean[r.low], mean[r.low + 1]);
+  }
+
+ private:
+  struct Place {
+    int low;
+    float t;
+  };
+  static Place place(float x) {
+    const float at = std::clamp(x, 0.0F, 1.0F) * (kSize - 1);
+    const int low = std::min(int(at), kSize - 2);
+    return {low, at - float(low)};
+  }
+};
+
+}  // namespace chiaro::renderer
