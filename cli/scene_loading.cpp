@@ -46,10 +46,8 @@ renderer::Lights environment_of(const LoadedStage& stage, const EnvironmentOptio
 }
 
 bool has_emission(const renderer::Scene& scene) {
-  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const renderer::Instance& instance) {
-    const renderer::Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
-    return renderer::max_component(scene.materials[std::size_t(mesh.material)].emission) > 0;
-  });
+  return renderer::any_drawn_material(
+      scene, [](const renderer::Material& material) { return renderer::max_component(material.emission) > 0; });
 }
 
 void require_light(const LoadedStage& stage, const renderer::Lights& lights) {

@@ -36,6 +36,11 @@ inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
 // In [0, 1).
 inline float unit_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24F; }
 
+// Of one of some batches of samples that are scrambled each by itself.
+inline std::uint64_t seed_of_batch(std::uint64_t seed, std::uint64_t batch) {
+  return seed * 0x9e3779b97f4a7c15ULL + batch;
+}
+
 // The points of one pixel's or receiver's sample `index`, dimension by dimension.
 class Sampler {
  public:

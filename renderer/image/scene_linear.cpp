@@ -5,6 +5,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/image/known_primaries.h"
+#include "renderer/image/srgb_curve.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -47,10 +48,6 @@ Vec3f multiply(const Rec709FromSpace& m, Vec3f color) {
 }
 
 }  // namespace
-
-float linear_from_srgb(float value) {
-  return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
-}
 
 std::vector<Vec3f> scene_linear_rec709(const ImageFile& file, const std::string& name) {
   const std::array<int, 3> channels = color_channels(file.image, name);

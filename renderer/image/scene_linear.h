@@ -14,7 +14,4 @@ namespace chiaro::renderer {
 // are no such channels or no such primaries.
 std::vector<Vec3f> scene_linear_rec709(const ImageFile& image, const std::string& file);
 
-// IEC 61966-2-1.
-float linear_from_srgb(float value);
-
 }  // namespace chiaro::renderer

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "renderer/image/srgb_curve.h"
+
 namespace chiaro::renderer {
 namespace {
 
 DecodeTable make_srgb_table() {
   DecodeTable table;
-  for (int i = 0; i < 256; ++i) {
-    const double v = i / 255.0;
-    table[i] = float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-  }
+  for (int i = 0; i < 256; ++i) table[i] = float(linear_from_srgb(i / 255.0));
   return table;
 }
 

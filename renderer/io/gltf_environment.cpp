@@ -8,7 +8,7 @@
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
-#include "renderer/image/scene_linear.h"
+#include "renderer/image/texel_encoding.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -48,8 +48,7 @@ Texture decode(const GltfDocument& document, int image) {
 
 // RGBD: linear colours divided by alpha; without alpha nothing is divided.
 std::vector<Vec3f> radiance_of(const Texture& texture) {
-  std::array<float, 256> linear;
-  for (std::size_t i = 0; i < 256; ++i) linear[i] = linear_from_srgb(float(i) / 255);
+  const DecodeTable& linear = decode_table(true);
   std::vector<Vec3f> pixels(texture.rgba.size() / 4);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const std::uint8_t* p = &texture.rgba[4 * i];

@@ -2,6 +2,7 @@
 // A scene as the renderer sees it: meshes, instances, materials, textures, cameras. Immutable after loading.
 // World space: right-handed, +Y up, metres. Colours: scene-linear Rec.709. Lights are not part of it.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -85,6 +86,14 @@ Box3f bounds(const Scene& scene);  // world, over all instances' vertices; empty
 
 // Fingerprint of all that light transport depends on: geometry, instances, materials, textures; not cameras.
 std::string fingerprint(const Scene& scene);
+
+// Whether any material that an instance shows is such.
+template <class Predicate>
+bool any_drawn_material(const Scene& scene, const Predicate& is) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return is(scene.materials[std::size_t(scene.meshes[std::size_t(instance.mesh)].material)]);
+  });
+}
 
 std::size_t drawn_triangle_count(const Scene& scene);  // instances counted each
 

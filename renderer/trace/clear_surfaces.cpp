@@ -7,19 +7,10 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr int kMostSurfaces = 1000;  // on one ray; more let nothing through
-
 float absorbed(float absorption, float distance) { return absorption > 0 ? std::exp(-absorption * distance) : 1; }
 
 Vec3f absorbed(Vec3f absorption, float distance) {
   return {absorbed(absorption.x, distance), absorbed(absorption.y, distance), absorbed(absorption.z, distance)};
-}
-
-bool any_material(const Scene& scene, bool (*is)(const MaterialLayers&)) {
-  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-    const Material& material = scene.materials[scene.meshes[instance.mesh].material];
-    return material.layers && is(*material.layers);
-  });
 }
 
 }  // namespace
@@ -53,7 +44,7 @@ Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& 
   Ray rest = ray;
   rest.clear = ClearSurfaces::kStop;
   Vec3f through{1, 1, 1};
-  for (int surfaces = 0; surfaces < kMostSurfaces; ++surfaces) {
+  for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
     const auto hit = tracer.intersect(rest);
     const float distance = (hit ? hit->distance : rest.far) * length_of_direction;
     if (!hit) return distance < kInfinity ? through * inside.transmittance(distance) : through;
@@ -61,7 +52,7 @@ Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& 
     through *= inside.transmittance(point, distance) * Bsdf(point).clear(-ray.direction / length_of_direction);
     if (!(max_component(through) > 0)) return {};
     inside.cross(point);
-    rest.origin = offset_point(point.position, -point.geometric_normal, point.rounding);
+    rest.origin = point_behind(point);
     rest.far -= hit->distance;
     if (!(rest.far > 0)) return through;
   }
@@ -69,11 +60,11 @@ Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& 
 }
 
 bool has_clear_surfaces(const Scene& scene) {
-  return any_material(scene, [](const MaterialLayers& layers) { return layers.transmission > 0; });
+  return any_drawn_material(scene, [](const Material& m) { return m.layers && m.layers->transmission > 0; });
 }
 
 bool has_solids(const Scene& scene) {
-  return any_material(scene, [](const MaterialLayers& layers) { return layers.solid; });
+  return any_drawn_material(scene, [](const Material& m) { return m.layers && m.layers->solid; });
 }
 
 }  // namespace chiaro::renderer

@@ -11,6 +11,9 @@
 
 namespace chiaro::renderer {
 
+// On one ray; more let nothing through.
+inline constexpr int kMostClearSurfaces = 1000;
+
 // The solids that a point is inside of, as far as its path knows.
 class Media {
  public:

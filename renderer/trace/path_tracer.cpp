@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "renderer/trace/path_vertex.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -14,16 +16,8 @@ constexpr float kMostSurvival = 0.95F;
 // light; farther away scattered rays find as much, for less.
 constexpr float kSubpathReach = 0.1F;
 
-constexpr int kMostStraight = 1000;  // clear surfaces in a row
-
 // Lights that vertex 0 asks where there are many.
 constexpr int kAsked = 2;
-
-// 0 where both are zero or infinite: a point of no measure.
-float balance_heuristic(float pdf, float other) {
-  const float weight = pdf / (pdf + other);
-  return weight >= 0 ? weight : 0;
-}
 
 // By how much the cone grows that a scattered ray stands for when textures are looked up: by the width of the
 // directions that share its density, as if some hundred rays shared them.
@@ -45,56 +39,6 @@ double next_fine(Sampler& sampler) {
 }
 
 }  // namespace
-
-// A surface that light is gathered at: either a material's, or a white receiver of which illumination is asked.
-struct PathTracer::Vertex {
-  Vec3f position;
-  Vec3f normal;    // geometric; rays start on its side
-  float rounding;  // of position, as SurfacePoint's
-  Vec3f to_viewer;
-  const Bsdf* bsdf;  // nullptr: a receiver, whose response to irradiance is 1/π
-  int index;
-  float area_pdf = 0;  // with which scattering at the vertex before found this one, per m²
-
-  // As SurfacePoint's; no lift: rays start at the position whatever their direction.
-  Vec3f lift{}, triangle_normal{};
-
-  // Light from below the triangle's horizon that the smooth surface sees: shadow rays start up there.
-  bool sees_past_triangle(Vec3f to_light) const {
-    return max_component(abs(lift)) > 0 && dot(triangle_normal, to_light) <= 0 && !transmits();
-  }
-
-  LightSource punctual = LightSource::kPunctual;  // how punctual lights are to be seen from here
-  const Media* media = nullptr;                   // on the viewer's side; nullptr: none
-
-  Vec3f eval(Vec3f to_light, LightSource source = LightSource::kExtended) const {
-    if (bsdf != nullptr) return bsdf->eval(to_viewer, to_light, source);
-    const float value = std::max(0.0F, dot(normal, to_light)) * kInvPi;
-    return {value, value, value};
-  }
-  float pdf(Vec3f to_light) const {
-    return bsdf != nullptr ? bsdf->pdf(to_viewer, to_light) : std::max(0.0F, dot(normal, to_light)) * kInvPi;
-  }
-  bool transmits() const { return bsdf != nullptr && bsdf->transmits(); }
-  bool transmits_to(Vec3f direction) const { return transmits() && dot(direction, normal) < 0; }
-  // Positive where light arrives from that way at all.
-  float incident_cosine(Vec3f to_light) const {
-    const float cosine = dot(normal, to_light);
-    return transmits() ? std::abs(cosine) : cosine;
-  }
-  // Zero: light from all sides matters.
-  Vec3f pick_normal() const {
-    if (bsdf == nullptr) return normal;
-    return bsdf->transmits() ? Vec3f{} : bsdf->normal();
-  }
-  Vec3f ray_origin(Vec3f direction) const {
-    return offset_point(position, transmits_to(direction) ? -normal : normal, rounding);
-  }
-  // Where a ray from so many metres away ends before it meets the vertex's own surface.
-  Vec3f ray_end(float distance) const {
-    return offset_point(position, normal, std::max(rounding, surface_rounding(distance, 0)));
-  }
-};
 
 PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission)
     : tracer_(tracer),
@@ -197,62 +141,6 @@ void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sa
   light.add(v.index, i, (weight * light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler)) * value);
 }
 
-// A ray from a light ends at y, and y is connected with the vertex. So is each clear surface that the ray passes.
-void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const float pick = sampler.next_1d();
-  const PunctualEmission::Sample from = emission_.sample(pick, sampler.next_2d());
-  Ray ray{from.origin, from.direction, 0, subpath_reach_, sampler.next_bits()};
-  Media media;
-  LightRay arriving{from, 0, {1, 1, 1}};
-  for (int surfaces = 0; surfaces < kMostStraight; ++surfaces) {
-    const auto hit = tracer_.intersect(ray);
-    if (!hit) return;
-    arriving.distance += hit->distance;
-    if (!clear_surfaces_) return connect(v, arriving, *hit, throughput, sampler, light);
-    const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
-    arriving.through *= media.transmittance(point, hit->distance);
-    connect(v, arriving, *hit, throughput, sampler, light);
-    arriving.through *= Bsdf(point).clear(-from.direction);
-    if (!(max_component(arriving.through) > 0)) return;
-    media.cross(point);
-    ray.origin = offset_point(point.position, -point.geometric_normal, point.rounding);
-    ray.far -= hit->distance;
-  }
-}
-
-void PathTracer::connect(const Vertex& v, const LightRay& arriving, const Hit& hit, Vec3f throughput, Sampler& sampler,
-                         PathLight& light) const {
-  const PunctualEmission::Sample& from = arriving.from;
-  const Vec3f end = from.origin + arriving.distance * from.direction;
-  const float r2 = length_squared(end - v.position);
-  if (!(r2 > 0)) return;
-  const float distance = std::sqrt(r2);
-  const Vec3f to_end = (end - v.position) / distance;
-  const Vec3f scattered = throughput * v.eval(to_end);
-  if (!(max_component(scattered) > 0)) return;
-
-  const Ray connection{v.position, to_end, 0, kInfinity, 0};
-  const SurfacePoint point = make_surface_point(tracer_.scene(), connection, hit);
-  const Bsdf bsdf(point);
-  const Vertex y{point.position, point.geometric_normal, point.rounding, -to_end, &bsdf, v.index + 1};
-  // A ray from behind the triangle does not arrive, whatever the smooth surface sees.
-  const float cosine_light = y.incident_cosine(-from.direction), cosine_vertex = dot(y.normal, -to_end);
-  const Vec3f reflected = y.eval(-from.direction, LightSource::kPunctualBlurred) * from.intensity;
-  if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
-
-  // Densities of y, per m², by this ray and by scattering at v followed by picking the same light.
-  const float d2 = arriving.distance * arriving.distance;
-  const float subpath_pdf = emission_.pdf(from.light, from.direction) * cosine_light / d2;
-  const float scatter_pdf =
-      v.pdf(to_end) * cosine_vertex / r2 * selection_.probability(from.light, y.position, y.pick_normal());
-  const float weight = balance_heuristic(subpath_pdf, scatter_pdf);
-  const Vec3f value = (weight * cosine_vertex / (r2 * d2 * subpath_pdf)) * scattered * reflected;
-  if (!(max_component(value) > 0) || !is_finite(value)) return;
-  Ray between = ray_between(v.ray_origin(to_end), y.ray_end(distance), sampler.next_bits());
-  between.clear = ClearSurfaces::kPassThin;
-  light.add(v.index + 1, from.light, arriving.through * light_along(between, v.media) * value);
-}
-
 void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
   const double pick = next_fine(sampler);
   const EmissiveTriangles::Sample s = emitters_.sample(v.position, v.pick_normal(), pick, sampler.next_2d());
@@ -278,21 +166,17 @@ void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Sampler& sa
 
 // What a scattered ray finds that meets nothing.
 void PathTracer::add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const {
-  if (ray.from_camera()) return add_seen_background(ray.direction, throughput, light);
+  if (ray.from_camera()) return add_background(ray.direction, throughput, light);
   for (const Environment& environment : environments_) {
     const float weight = balance_heuristic(ray.pdf, environment.sampling.pdf(ray.direction));
     light.add(index - 1, environment.source, weight * throughput * environment.sampling.radiance(ray.direction));
   }
 }
 
-void PathTracer::add_seen_background(Vec3f direction, Vec3f throughput, PathLight& light) const {
+void PathTracer::add_background(Vec3f direction, Vec3f throughput, PathLight& light) const {
   for (const Environment& environment : environments_) {
     light.add(0, environment.source, throughput * environment.sampling.radiance(direction));
   }
-}
-
-void PathTracer::add_background(Vec3f direction, PathLight& light) const {
-  add_seen_background(direction, {1, 1, 1}, light);
 }
 
 void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
@@ -319,7 +203,7 @@ void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Sampler
 }
 
 void PathTracer::ScatteredRay::go_straight(const SurfacePoint& through, float distance) {
-  origin = offset_point(through.position, -through.geometric_normal, through.rounding);
+  origin = point_behind(through);
   travelled += distance;
   media.cross(through);
 }
@@ -358,7 +242,7 @@ bool PathTracer::scatter(const Vertex& vertex, const SurfacePoint& point, Sample
 }
 
 void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  for (int straight = 0; straight < kMostStraight;) {
+  for (int straight = 0; straight < kMostClearSurfaces;) {
     Ray ray{scattered.origin, scattered.direction, 0, kInfinity, sampler.next_bits()};
     ray.cone_spread = scattered_cone(scattered.pdf);
     ray.cone_width = ray.cone_spread * scattered.travelled;
@@ -458,9 +342,7 @@ void PathTracer::add_indirect_illumination(const Vertex& vertex, Sampler& sample
 }
 
 bool has_blended_surfaces(const Scene& scene) {
-  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-    return scene.materials[scene.meshes[instance.mesh].material].alpha_mode == AlphaMode::kBlend;
-  });
+  return any_drawn_material(scene, [](const Material& m) { return m.alpha_mode == AlphaMode::kBlend; });
 }
 
 }  // namespace chiaro::renderer

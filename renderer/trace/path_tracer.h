@@ -50,8 +50,8 @@ class PathTracer {
   void add_scattered(const SurfacePoint& vertex, Vec3f to_viewer, int index, Vec3f throughput, Sampler& sampler,
                      PathLight& light) const;
 
-  // What a ray of the camera that meets nothing sees: environments.
-  void add_background(Vec3f direction, PathLight& light) const;
+  // What a ray of the camera that meets nothing sees, times `throughput`: environments.
+  void add_background(Vec3f direction, Vec3f throughput, PathLight& light) const;
 
   // Illumination (irradiance / π) of a surface point by one path. `with_punctual`: its direct light from punctual
   // lights too.
@@ -110,7 +110,6 @@ class PathTracer {
   void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_environments(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
   void add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const;
-  void add_seen_background(Vec3f direction, Vec3f throughput, PathLight& light) const;
   Vec3f light_through(const Vertex& vertex, Vec3f to_light, float distance, ClearSurfaces clear,
                       Sampler& sampler) const;
   Vec3f light_along(const Ray& ray, const Media* media) const;

@@ -28,7 +28,7 @@ struct SampleKey {
 };
 
 Sampler make_sampler(const RenderOptions& options, const SampleKey& key) {
-  const std::uint64_t seed = options.trace.seed * 0x9e3779b97f4a7c15ULL + std::uint64_t(key.batch);
+  const std::uint64_t seed = seed_of_batch(options.trace.seed, std::uint64_t(key.batch));
   return Sampler(seed, std::uint32_t(key.y) * std::uint32_t(options.width) + std::uint32_t(key.x), key.index);
 }
 
@@ -60,7 +60,7 @@ void sample_pixel(const FrameTask& task, const SampleKey& key, const Film& film,
   const Ray ray = camera_ray(task, key, sampler);
   const auto hit = task.tracer.intersect(ray);
   if (!hit) {
-    task.paths.add_background(normalize(ray.direction), sample.light);
+    task.paths.add_background(normalize(ray.direction), {1, 1, 1}, sample.light);
     sample.beauty = sample.light.direct;
     return;
   }

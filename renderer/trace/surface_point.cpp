@@ -313,7 +313,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   if (material.layers) {
     point.layers = layers_at(at, *material.layers);
     const NormalMap coat{material.layers->clearcoat_normal_texture, material.layers->clearcoat_normal_scale};
-    const Vec3f normal = shading_normals(at, coat, instance.world_from_object, hit).mapped;
+    const Vec3f normal =
+        coat.use.texture < 0 ? normals.smooth : shading_normals(at, coat, instance.world_from_object, hit).mapped;
     point.layers->clearcoat_normal = bend_for_reflection(on_side(normal), to_viewer, point.geometric_normal);
   }
   return point;

@@ -41,6 +41,11 @@ struct SurfacePoint {
   std::optional<SurfaceLayers> layers;  // absent: Lambert or plain metallic-roughness
 };
 
+// Where a ray goes on that passes straight through the surface.
+inline Vec3f point_behind(const SurfacePoint& point) {
+  return offset_point(point.position, -point.geometric_normal, point.rounding);
+}
+
 SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 
 // Alpha of a mesh at barycentric u, v of a triangle: factor × texture × vertex colour.

@@ -41,7 +41,7 @@ Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceO
   Vec3f mean;
   for (int b = 0; b < batches; ++b) {
     const int count = options.samples / batches + (b < options.samples % batches ? 1 : 0);
-    const std::uint64_t seed = options.seed * 0x9e3779b97f4a7c15ULL + std::uint64_t(b) + 1;
+    const std::uint64_t seed = seed_of_batch(options.seed, std::uint64_t(b) + 1);
     means[b] = batch_mean(paths, at, with_punctual, seed, stream, count);
     mean += means[b] / float(batches);
   }

@@ -79,6 +79,12 @@ Mesh sphere(Vec3f center, float radius, int bands, bool inwards) {
   return mesh;
 }
 
+Scene plane_scene(Vec3f albedo) {
+  Scene scene;
+  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, 10), lambert(albedo), "plane");
+  return scene;
+}
+
 Scene corner_with_ball() {
   Scene scene;
   scene.path = "corner_with_ball";

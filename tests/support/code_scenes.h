@@ -21,6 +21,9 @@ renderer::Mesh room(Vec3f size, int n = 1);
 // A sphere of latitude bands; normals outwards, or inwards.
 renderer::Mesh sphere(Vec3f center, float radius, int bands, bool inwards = false);
 
+// An open plane y = 0, facing up, 10 × 10 m around the origin.
+renderer::Scene plane_scene(Vec3f albedo);
+
 // A floor, two walls and a ball: small, with shadows and colour bleeding. 4 × 3 × 4 m.
 renderer::Scene corner_with_ball();
 

@@ -6,7 +6,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/image/image_file.h"
-#include "renderer/image/scene_linear.h"
+#include "renderer/image/srgb_curve.h"
 #include "renderer/io/light_file.h"
 #include "renderer/io/load_gltf.h"
 #include "renderer/io/save_gltf.h"

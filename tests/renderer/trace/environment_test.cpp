@@ -17,18 +17,13 @@ using test::add_mesh;
 using test::environment;
 using test::environment_map;
 using test::lambert;
+using test::plane_scene;
 using test::rectangle;
 
 constexpr int kWidth = 64, kHeight = 32;
 
 EnvironmentMap constant_map(Vec3f radiance) {
   return environment_map(kWidth, kHeight, [&](int, int) { return radiance; });
-}
-
-Scene plane_scene(Vec3f albedo) {
-  Scene scene;
-  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, 10), lambert(albedo), "plane");
-  return scene;
 }
 
 TEST(Environment, OfOneRadianceGivesAnOpenPlaneThatIllumination) {

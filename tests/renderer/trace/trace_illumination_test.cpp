@@ -13,13 +13,8 @@ namespace {
 
 using test::add_mesh;
 using test::lambert;
+using test::plane_scene;
 using test::rectangle;
-
-Scene plane_scene(Vec3f albedo) {
-  Scene scene;
-  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, 10), lambert(albedo), "plane");
-  return scene;
-}
 
 TEST(TraceIllumination, PointLightOverPlaneIsIntensityCosineOverPiDistanceSquared) {
   const Scene scene = plane_scene({0.5F, 0.5F, 0.5F});
