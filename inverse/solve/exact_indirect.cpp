@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSamplesFactor = 4;                    // gather rays per receiver, over those of the bake
 constexpr int kPointsPerSample = 16;                 // gather points over rays
-constexpr std::size_t kPaths = 4000000;              // of all lights together …
+constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …
 constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver
 
 // Makes the light's indirect illumination indirect(receiver, channel), where it stands now.
@@ -54,8 +54,9 @@ void ExactIndirect::correct(const LightResponse& response, LightEstimates& light
 void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimates& lights) const {
   std::vector<std::size_t> all(response.receiver_count());
   std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples);
   for (LightEstimate& light : lights) {
-    const std::vector<Vec3f> indirect = traced(response, all, light.position, kPaths / lights.size());
+    const std::vector<Vec3f> indirect = traced(response, all, light.position, paths / lights.size());
     set_correction(response, light, indirect.size(), [&](std::size_t i, int c) { return indirect[i][c]; });
   }
 }
