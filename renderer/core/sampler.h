@@ -23,14 +23,28 @@ inline std::uint32_t reverse_bits(std::uint32_t x) {
   return __builtin_bswap32(x);
 }
 
-inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-  x = reverse_bits(x);
+// The Laine–Karras permutation: each bit is flipped, or not, by those below it.
+inline std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeaU;
   x += seed;
   x *= (seed >> 16) | 1U;
   x ^= x * 0x05526c56U;
   x ^= x * 0x53a22864U;
-  return reverse_bits(x);
+  return x;
+}
+
+inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  return reverse_bits(laine_karras(reverse_bits(x), seed));
+}
+
+// The second Sobol' dimension, of the first: with bits as coefficients, highest first, p(x) becomes p(1 + x) modulo 2.
+inline std::uint32_t sobol_second_dimension(std::uint32_t first) {
+  first ^= first << 16;
+  first ^= (first & 0x00ff00ffU) << 8;
+  first ^= (first & 0x0f0f0f0fU) << 4;
+  first ^= (first & 0x33333333U) << 2;
+  first ^= (first & 0x55555555U) << 1;
+  return first;
 }
 
 // In [0, 1).
@@ -45,34 +59,30 @@ inline std::uint64_t seed_of_batch(std::uint64_t seed, std::uint64_t batch) {
 class Sampler {
  public:
   Sampler(std::uint64_t seed, std::uint32_t stream, std::uint32_t index)
-      : key_(hash_combine(hash_combine(std::uint32_t(seed), std::uint32_t(seed >> 32)), stream)), index_(index) {}
+      : key_(hash_combine(hash_combine(std::uint32_t(seed), std::uint32_t(seed >> 32)), stream)),
+        index_(index),
+        reversed_index_(reverse_bits(index)) {}
 
   float next_1d() {
     const std::uint32_t key = next_key();
-    return unit_float(owen_scramble(reverse_bits(shuffled_index(key)), hash_combine(key, 1)));
+    return unit_float(owen_scramble(shuffled(key), hash_combine(key, 1)));
   }
 
   Vec2f next_2d() {
     const std::uint32_t key = next_key();
-    const std::uint32_t i = shuffled_index(key);
-    return {unit_float(owen_scramble(reverse_bits(i), hash_combine(key, 1))),
-            unit_float(owen_scramble(sobol_second_dimension(i), hash_combine(key, 2)))};
+    const std::uint32_t first = shuffled(key);
+    return {unit_float(owen_scramble(first, hash_combine(key, 1))),
+            unit_float(owen_scramble(sobol_second_dimension(first), hash_combine(key, 2)))};
   }
 
   std::uint32_t next_bits() { return hash_combine(next_key(), index_); }
 
  private:
   std::uint32_t next_key() { return hash_combine(key_, ++dimension_); }
-  std::uint32_t shuffled_index(std::uint32_t key) const { return owen_scramble(index_, key); }
-  static std::uint32_t sobol_second_dimension(std::uint32_t i) {
-    std::uint32_t x = 0;
-    for (std::uint32_t v = 1U << 31; i != 0; i >>= 1, v ^= v >> 1) {
-      if (i & 1U) x ^= v;
-    }
-    return x;
-  }
+  // The first Sobol' dimension of a point of the sequence, taken in another order by each key.
+  std::uint32_t shuffled(std::uint32_t key) const { return laine_karras(reversed_index_, key); }
 
-  std::uint32_t key_, index_, dimension_ = 0;
+  std::uint32_t key_, index_, reversed_index_, dimension_ = 0;
 };
 
 // Cosine-weighted direction around +Z (Malley's method); pdf = z / π.

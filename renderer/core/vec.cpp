@@ -27,7 +27,7 @@ Vec3f transform_normal(const Mat4f& t, Vec3f n) {
   const Vec3f c0 = cross(t.column(1), t.column(2));
   const Vec3f c1 = cross(t.column(2), t.column(0));
   const Vec3f c2 = cross(t.column(0), t.column(1));
-  const Vec3f v = std::copysign(1.0F, determinant3(t)) * (n.x * c0 + n.y * c1 + n.z * c2);
+  const Vec3f v = std::copysign(1.0F, dot(t.column(0), c0)) * (n.x * c0 + n.y * c1 + n.z * c2);
   const float l = length(v);
   return l > 0 && std::isfinite(l) ? v / l : Vec3f{};
 }

@@ -4,42 +4,49 @@
 
 namespace chiaro::renderer {
 
-// A ray from a light ends at y, and y is connected with the vertex. So is each clear surface that the ray passes.
-void PathTracer::add_light_subpath(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+PathTracer::Path PathTracer::start_path(Sampler& sampler, PathLight& light) const {
+  return {sampler, light,
+          emission_.empty() || bounces_ == 0 ? std::vector<LightVertex>() : trace_light_subpath(sampler)};
+}
+
+std::vector<PathTracer::LightVertex> PathTracer::trace_light_subpath(Sampler& sampler) const {
   const float pick = sampler.next_1d();
   const PunctualEmission::Sample from = emission_.sample(pick, sampler.next_2d());
   Ray ray{from.origin, from.direction, 0, subpath_reach_, sampler.next_bits()};
   Media media;
-  LightRay arriving{from, 0, {1, 1, 1}};
-  for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
+  Vec3f through{1, 1, 1};
+  float distance = 0;
+  std::vector<LightVertex> vertices;
+  while (vertices.size() < kMostClearSurfaces) {
     const auto hit = tracer_.intersect(ray);
-    if (!hit) return;
-    arriving.distance += hit->distance;
-    if (!clear_surfaces_) return connect(v, arriving, *hit, throughput, sampler, light);
+    if (!hit) break;
+    distance += hit->distance;
+    if (!clear_surfaces_) return {{from, *hit, distance, through}};
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
-    arriving.through *= media.transmittance(point, hit->distance);
-    connect(v, arriving, *hit, throughput, sampler, light);
-    arriving.through *= Bsdf(point).clear(-from.direction);
-    if (!(max_component(arriving.through) > 0)) return;
+    through *= media.transmittance(point, hit->distance);
+    vertices.push_back({from, *hit, distance, through});
+    through *= Bsdf(point).clear(-from.direction);
+    if (!(max_component(through) > 0)) break;
     media.cross(point);
     ray.origin = point_behind(point);
     ray.far -= hit->distance;
   }
+  return vertices;
 }
 
-void PathTracer::connect(const Vertex& v, const LightRay& arriving, const Hit& hit, Vec3f throughput, Sampler& sampler,
-                         PathLight& light) const {
-  const PunctualEmission::Sample& from = arriving.from;
-  const Vec3f end = from.origin + arriving.distance * from.direction;
-  const float r2 = length_squared(end - v.position);
+// A light's ray that ends at y, which is connected with the vertex.
+void PathTracer::connect(const Vertex& v, const LightVertex& end, Vec3f throughput, Path& path) const {
+  const PunctualEmission::Sample& from = end.from;
+  const Vec3f position = from.origin + end.distance * from.direction;
+  const float r2 = length_squared(position - v.position);
   if (!(r2 > 0)) return;
   const float distance = std::sqrt(r2);
-  const Vec3f to_end = (end - v.position) / distance;
+  const Vec3f to_end = (position - v.position) / distance;
   const Vec3f scattered = throughput * v.eval(to_end);
   if (!(max_component(scattered) > 0)) return;
 
   const Ray connection{v.position, to_end, 0, kInfinity, 0};
-  const SurfacePoint point = make_surface_point(tracer_.scene(), connection, hit);
+  const SurfacePoint point = make_surface_point(tracer_.scene(), connection, end.hit);
   const Bsdf bsdf(point);
   const Vertex y{point.position, point.geometric_normal, point.rounding, -to_end, &bsdf, v.index + 1};
   // A ray from behind the triangle does not arrive, whatever the smooth surface sees.
@@ -48,16 +55,16 @@ void PathTracer::connect(const Vertex& v, const LightRay& arriving, const Hit& h
   if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
 
   // Densities of y, per m², by this ray and by scattering at v followed by picking the same light.
-  const float d2 = arriving.distance * arriving.distance;
+  const float d2 = end.distance * end.distance;
   const float subpath_pdf = emission_.pdf(from.light, from.direction) * cosine_light / d2;
   const float scatter_pdf =
       v.pdf(to_end) * cosine_vertex / r2 * selection_.probability(from.light, y.position, y.pick_normal());
   const float weight = balance_heuristic(subpath_pdf, scatter_pdf);
   const Vec3f value = (weight * cosine_vertex / (r2 * d2 * subpath_pdf)) * scattered * reflected;
   if (!(max_component(value) > 0) || !is_finite(value)) return;
-  Ray between = ray_between(v.ray_origin(to_end), y.ray_end(distance), sampler.next_bits());
+  Ray between = ray_between(v.ray_origin(to_end), y.ray_end(distance), path.sampler.next_bits());
   between.clear = ClearSurfaces::kPassThin;
-  light.add(v.index + 1, from.light, arriving.through * light_along(between, v.media) * value);
+  path.light.add(v.index + 1, from.light, end.through * light_along(between, v.media) * value);
 }
 
 }  // namespace chiaro::renderer

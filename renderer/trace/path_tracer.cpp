@@ -65,48 +65,54 @@ Vec3f PathTracer::light_along(const Ray& ray, const Media* media) const {
   return media != nullptr ? media->transmittance(ray.far * length(ray.direction)) : Vec3f{1, 1, 1};
 }
 
-Vec3f PathTracer::light_through(const Vertex& v, Vec3f to_light, float distance, ClearSurfaces clear,
-                                Sampler& sampler) const {
+Vec3f PathTracer::light_through(const Vertex& v, const LightSample& from, std::uint32_t alpha_seed) const {
   // A little short of the light, so that an emissive triangle does not hide itself.
   constexpr float kShort = 1e-4F;
-  Ray ray{v.ray_origin(to_light), to_light};
-  ray.far = distance == kInfinity ? kInfinity : distance * (1 - kShort);
-  ray.alpha_seed = sampler.next_bits();
-  ray.clear = clear;
-  if (!v.sees_past_triangle(to_light)) return light_along(ray, v.media);
+  Ray ray{v.ray_origin(from.to_light), from.to_light};
+  ray.far = from.distance == kInfinity ? kInfinity : from.distance * (1 - kShort);
+  ray.alpha_seed = alpha_seed;
+  ray.clear = from.clear;
+  if (!v.sees_past_triangle(from.to_light)) return light_along(ray, v.media);
   const Vec3f lifted = offset_point(v.position + v.lift, v.normal, v.rounding);
   Ray up = ray;
   up.direction = lifted - ray.origin, up.far = 1;
   const Vec3f to_lifted = light_along(up, v.media);
   if (!(max_component(to_lifted) > 0)) return {};
   ray.origin = lifted;
-  if (distance != kInfinity) ray.direction = v.position + distance * to_light - lifted, ray.far = 1 - kShort;
+  if (from.distance != kInfinity) {
+    ray.direction = v.position + from.distance * from.to_light - lifted, ray.far = 1 - kShort;
+  }
   return to_lifted * light_along(ray, v.media);
 }
 
-void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+// `value`: what the sample brings if nothing stands between.
+void PathTracer::add_if_seen(const Vertex& v, std::size_t source, const LightSample& from, Vec3f value,
+                             Path& path) const {
+  if (!(max_component(value) > 0)) return;
+  path.light.add(v.index, source, light_through(v, from, path.sampler.next_bits()) * value);
+}
+
+void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const PunctualSample s = sample_punctual(lights_[i], v.position);
     const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance;
-    if (max_component(value) > 0)
-      light.add(v.index, i, light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler) * value);
+    add_if_seen(v, i, {s.to_light, s.distance, ClearSurfaces::kPassAll}, value, path);
   }
 }
 
-void PathTracer::add_chosen(const Vertex& v, LightSelection::Pick chosen, Vec3f throughput, Sampler& sampler,
-                            PathLight& light) const {
+void PathTracer::add_chosen(const Vertex& v, LightSelection::Pick chosen, Vec3f throughput, Path& path) const {
   const PunctualSample s = sample_punctual(lights_[chosen.light], v.position);
   const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / chosen.probability;
-  if (!(max_component(value) > 0) || !is_finite(value)) return;
-  light.add(v.index, chosen.light, light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler) * value);
+  if (!is_finite(value)) return;
+  add_if_seen(v, chosen.light, {s.to_light, s.distance, ClearSurfaces::kPassAll}, value, path);
 }
 
-void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const double u = next_fine(sampler);
+void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
+  const double u = next_fine(path.sampler);
   if (!selection_.weighs_all()) {
     for (int k = 0; k < kAsked; ++k) {
       const LightSelection::Pick pick = selection_.pick(v.position, v.pick_normal(), (k + u) / kAsked);
-      if (pick.probability > 0) add_chosen(v, {pick.light, kAsked * pick.probability}, throughput, sampler, light);
+      if (pick.probability > 0) add_chosen(v, {pick.light, kAsked * pick.probability}, throughput, path);
     }
     return;
   }
@@ -121,13 +127,13 @@ void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Sampler& s
     int times = 0;
     for (; k < kAsked && found.light == chosen.light; found = walk.find((k + u) / kAsked * weights.total)) ++k, ++times;
     if (!(chosen.probability > 0)) continue;
-    add_chosen(v, {chosen.light, kAsked * chosen.probability / float(times)}, throughput, sampler, light);
+    add_chosen(v, {chosen.light, kAsked * chosen.probability / float(times)}, throughput, path);
   }
 }
 
 // Beyond vertex 0, where one light is enough. Weighted against a ray from that light having ended here.
-void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const auto [i, probability] = selection_.pick(v.position, v.pick_normal(), next_fine(sampler));
+void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
+  const auto [i, probability] = selection_.pick(v.position, v.pick_normal(), next_fine(path.sampler));
   if (!(probability > 0)) return;
   const PunctualSample s = sample_punctual(lights_[i], v.position);
   const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / probability;
@@ -138,38 +144,34 @@ void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Sampler& sa
     const float subpath_pdf = emission_.pdf(i, -s.to_light) * cosine / (s.distance * s.distance);
     weight = balance_heuristic(v.area_pdf * probability, subpath_pdf);
   }
-  light.add(v.index, i, (weight * light_through(v, s.to_light, s.distance, ClearSurfaces::kPassAll, sampler)) * value);
+  add_if_seen(v, i, {s.to_light, s.distance, ClearSurfaces::kPassAll}, weight * value, path);
 }
 
-void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  const double pick = next_fine(sampler);
-  const EmissiveTriangles::Sample s = emitters_.sample(v.position, v.pick_normal(), pick, sampler.next_2d());
+void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Path& path) const {
+  const double pick = next_fine(path.sampler);
+  const EmissiveTriangles::Sample s = emitters_.sample(v.position, v.pick_normal(), pick, path.sampler.next_2d());
   if (!(s.pdf > 0)) return;
   const Vec3f value = throughput * v.eval(s.to_light) * s.radiance / s.pdf;
-  if (!(max_component(value) > 0)) return;
   const float weight = balance_heuristic(s.pdf, v.pdf(s.to_light));
-  light.add(v.index, emission_source(),
-            (weight * light_through(v, s.to_light, s.distance, ClearSurfaces::kPassThin, sampler)) * value);
+  add_if_seen(v, emission_source(), {s.to_light, s.distance, ClearSurfaces::kPassThin}, weight * value, path);
 }
 
-void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Path& path) const {
   for (const Environment& environment : environments_) {
-    const EnvironmentSampling::Sample s = environment.sampling.sample(sampler.next_2d());
+    const EnvironmentSampling::Sample s = environment.sampling.sample(path.sampler.next_2d());
     if (!(s.pdf > 0)) continue;
     const Vec3f value = throughput * v.eval(s.direction) * s.radiance / s.pdf;
-    if (!(max_component(value) > 0)) continue;
     const float weight = balance_heuristic(s.pdf, v.pdf(s.direction));
-    light.add(v.index, environment.source,
-              (weight * light_through(v, s.direction, kInfinity, ClearSurfaces::kPassThin, sampler)) * value);
+    add_if_seen(v, environment.source, {s.direction, kInfinity, ClearSurfaces::kPassThin}, weight * value, path);
   }
 }
 
 // What a scattered ray finds that meets nothing.
-void PathTracer::add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const {
-  if (ray.from_camera()) return add_background(ray.direction, throughput, light);
+void PathTracer::add_missed(const ScatteredRay& ray, int index, Vec3f throughput, Path& path) const {
+  if (ray.from_camera()) return add_background(ray.direction, throughput, path.light);
   for (const Environment& environment : environments_) {
     const float weight = balance_heuristic(ray.pdf, environment.sampling.pdf(ray.direction));
-    light.add(index - 1, environment.source, weight * throughput * environment.sampling.radiance(ray.direction));
+    path.light.add(index - 1, environment.source, weight * throughput * environment.sampling.radiance(ray.direction));
   }
 }
 
@@ -179,27 +181,29 @@ void PathTracer::add_background(Vec3f direction, Vec3f throughput, PathLight& li
   }
 }
 
-void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
   if (lights_.empty()) return;
   if (v.index > 0) {
-    add_one_punctual(v, throughput, sampler, light);
+    add_one_punctual(v, throughput, path);
   } else if (selection_.few()) {
-    add_all_punctual(v, throughput, sampler, light);
+    add_all_punctual(v, throughput, path);
   } else {
-    add_some_punctual(v, throughput, sampler, light);
+    add_some_punctual(v, throughput, path);
   }
 }
 
 // The light of one vertex, but for what scattered rays bring.
-void PathTracer::add_lights(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  add_punctual(v, throughput, sampler, light);
-  add_indirect_samples(v, throughput, sampler, light);
+void PathTracer::add_lights(const Vertex& v, Vec3f throughput, Path& path) const {
+  add_punctual(v, throughput, path);
+  add_indirect_samples(v, throughput, path);
 }
 
-void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Sampler& sampler, PathLight& light) const {
-  if (!emission_.empty() && v.index < bounces_) add_light_subpath(v, throughput, sampler, light);
-  if (!emitters_.empty()) add_emissive(v, throughput, sampler, light);
-  add_environments(v, throughput, sampler, light);
+void PathTracer::add_indirect_samples(const Vertex& v, Vec3f throughput, Path& path) const {
+  if (v.index < bounces_) {
+    for (const LightVertex& y : path.light_vertices) connect(v, y, throughput, path);
+  }
+  if (!emitters_.empty()) add_emissive(v, throughput, path);
+  add_environments(v, throughput, path);
 }
 
 void PathTracer::ScatteredRay::go_straight(const SurfacePoint& through, float distance) {
@@ -210,12 +214,12 @@ void PathTracer::ScatteredRay::go_straight(const SurfacePoint& through, float di
 
 // What the ray finds, weighted against light samples at the vertex that it left.
 void PathTracer::add_emission(const SurfacePoint& point, const Hit& hit, const ScatteredRay& ray, int index,
-                              Vec3f throughput, PathLight& light) const {
+                              Vec3f throughput, Path& path) const {
   if (!(max_component(point.emission) > 0)) return;
-  if (ray.from_camera()) return light.add(0, emission_source(), throughput * point.emission);
+  if (ray.from_camera()) return path.light.add(0, emission_source(), throughput * point.emission);
   if (emitters_.empty()) return;
   const float weight = balance_heuristic(ray.pdf, emitters_.pdf(hit, ray.position, ray.normal, point.position));
-  light.add(index - 1, emission_source(), weight * throughput * point.emission);
+  path.light.add(index - 1, emission_source(), weight * throughput * point.emission);
 }
 
 // Turns `ray` as the surface scatters it; false: nothing goes on. A ray that goes straight through keeps its density.
@@ -241,17 +245,17 @@ bool PathTracer::scatter(const Vertex& vertex, const SurfacePoint& point, Sample
   return true;
 }
 
-void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const {
+void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path& path) const {
   for (int straight = 0; straight < kMostClearSurfaces;) {
-    Ray ray{scattered.origin, scattered.direction, 0, kInfinity, sampler.next_bits()};
+    Ray ray{scattered.origin, scattered.direction, 0, kInfinity, path.sampler.next_bits()};
     ray.cone_spread = scattered_cone(scattered.pdf);
     ray.cone_width = ray.cone_spread * scattered.travelled;
     ray.sees_unlit = scattered.from_camera();
     const auto hit = tracer_.intersect(ray);
-    if (!hit) return add_missed(scattered, index, throughput, light);
+    if (!hit) return add_missed(scattered, index, throughput, path);
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
     if (solids_) throughput *= scattered.media.transmittance(point, hit->distance);
-    add_emission(point, *hit, scattered, index, throughput, light);
+    add_emission(point, *hit, scattered, index, throughput, path);
     if (point.unlit || (index > bounces_ && !clear_surfaces_)) return;
     const Bsdf bsdf(point);
     const Vec3f to_viewer = -scattered.direction;
@@ -274,14 +278,14 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Samp
                         .triangle_normal = point.geometric_normal,
                         .punctual = scattered.rough ? LightSource::kPunctualBlurred : LightSource::kPunctual,
                         .media = solids_ ? &scattered.media : nullptr};
-    add_lights(vertex, throughput, sampler, light);
+    add_lights(vertex, throughput, path);
     if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
-    if (!scatter(vertex, point, sampler, scattered, throughput)) return;
+    if (!scatter(vertex, point, path.sampler, scattered, throughput)) return;
     const bool turned = scattered.travelled == 0;
     if (turned && index == bounces_ && !has_emission()) return;
     if (turned && index + 1 >= kRouletteVertex) {
       const float survival = std::min(kMostSurvival, max_component(throughput));
-      if (!(sampler.next_1d() < survival)) return;
+      if (!(path.sampler.next_1d() < survival)) return;
       throughput *= 1 / survival;
     }
     straight = turned ? 0 : straight + 1;
@@ -295,23 +299,26 @@ void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int i
   const Bsdf bsdf(point);
   const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, 0,
                       point.lift,     point.geometric_normal};
-  add_lights(vertex, throughput, sampler, light);
+  Path path = start_path(sampler, light);
+  add_lights(vertex, throughput, path);
   if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
   ScatteredRay ray{
       .origin = point.position + to_viewer, .direction = -to_viewer, .position = {}, .normal = {}, .media = {}};
   if (!scatter(vertex, point, sampler, ray, throughput)) return;
-  trace(ray, ray.travelled == 0 ? index + 1 : index, throughput, sampler, light);
+  trace(ray, ray.travelled == 0 ? index + 1 : index, throughput, path);
 }
 
 void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const {
-  add_all_punctual({position, normal, 0, normal, nullptr, 0}, {1, 1, 1}, sampler, light);
+  Path path{sampler, light, {}};
+  add_all_punctual({position, normal, 0, normal, nullptr, 0}, {1, 1, 1}, path);
 }
 
 void PathTracer::add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler,
                                   PathLight& light) const {
   const Vertex vertex{position, normal, 0, normal, nullptr, 0};
-  if (with_punctual) add_punctual(vertex, {1, 1, 1}, sampler, light);
-  add_indirect_illumination(vertex, sampler, light);
+  Path path = start_path(sampler, light);
+  if (with_punctual) add_punctual(vertex, {1, 1, 1}, path);
+  add_indirect_illumination(vertex, path);
 }
 
 void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const {
@@ -320,14 +327,15 @@ void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, P
   const Vec3f normal = point.shading_normal;
   const float rounding = point.rounding / std::max(kLeastCosine, dot(normal, point.geometric_normal));
   const Vertex vertex{point.position, normal, rounding, normal, nullptr, 0, 0, point.lift, point.geometric_normal};
-  add_punctual(vertex, {1, 1, 1}, sampler, light);
-  add_indirect_illumination(vertex, sampler, light);
+  Path path = start_path(sampler, light);
+  add_punctual(vertex, {1, 1, 1}, path);
+  add_indirect_illumination(vertex, path);
 }
 
-void PathTracer::add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const {
-  add_indirect_samples(vertex, {1, 1, 1}, sampler, light);
+void PathTracer::add_indirect_illumination(const Vertex& vertex, Path& path) const {
+  add_indirect_samples(vertex, {1, 1, 1}, path);
   if (bounces_ == 0 && !has_emission()) return;
-  const Vec3f local = sample_cosine_hemisphere(sampler.next_2d());
+  const Vec3f local = sample_cosine_hemisphere(path.sampler.next_2d());
   if (!(local.z > 0)) return;
   const Vec3f direction = normalize(Frame3f(vertex.normal).world_from_local(local));
   // Illumination is the mean of incident radiance over cosine-weighted directions.
@@ -338,7 +346,7 @@ void PathTracer::add_indirect_illumination(const Vertex& vertex, Sampler& sample
          .normal = vertex.pick_normal(),
          .rough = true,
          .media = {}},
-        1, {1, 1, 1}, sampler, light);
+        1, {1, 1, 1}, path);
 }
 
 bool has_blended_surfaces(const Scene& scene) {

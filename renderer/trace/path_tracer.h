@@ -3,8 +3,8 @@
 // next-event estimation, Russian roulette, and multiple importance sampling where it matters:
 // - emissive surfaces and environments are found by light samples and by scattered rays;
 // - the bright spot that a point light makes on a surface close to it, which scattered rays rarely meet, is found by a
-//   ray from the light too, whose end every vertex of the path is connected with (bidirectional path tracing with light
-//   subpaths of two vertices).
+//   ray from the light too: one for each path, whose end all its vertices are connected with (bidirectional path
+//   tracing with light subpaths of two vertices).
 // Of a few punctual lights, vertex 0 asks all, and later vertices one. Of more, vertex 0 asks some, spread evenly over
 // what each would bring if nothing stood between, and later vertices one.
 // Clear surfaces (glass, see clear_surfaces.h) let scattered rays through by chance, and light samples in full: thin
@@ -84,34 +84,46 @@ class PathTracer {
     bool from_camera() const { return pdf == kInfinity; }
     void go_straight(const SurfacePoint& through, float distance);
   };
-  // A light's ray as it arrives at a surface.
-  struct LightRay {
-    PunctualEmission::Sample from;
-    float distance = 0;  // metres
-    Vec3f through;       // what clear surfaces have left of it
+  // Where light comes from to a vertex.
+  struct LightSample {
+    Vec3f to_light;       // unit
+    float distance;       // metres
+    ClearSurfaces clear;  // that it passes
   };
-  void add_indirect_illumination(const Vertex& vertex, Sampler& sampler, PathLight& light) const;
-  void trace(ScatteredRay ray, int index, Vec3f throughput, Sampler& sampler, PathLight& light) const;
+  // A surface that a light's ray has arrived at.
+  struct LightVertex {
+    PunctualEmission::Sample from;
+    Hit hit;
+    float distance;  // metres
+    Vec3f through;   // what clear surfaces have left of the ray
+  };
+  // One path from vertex 0 on.
+  struct Path {
+    Sampler& sampler;
+    PathLight& light;
+    std::vector<LightVertex> light_vertices;  // of its light subpath: one, and more behind clear surfaces
+  };
+  void add_indirect_illumination(const Vertex& vertex, Path& path) const;
+  void trace(ScatteredRay ray, int index, Vec3f throughput, Path& path) const;
   void add_emission(const SurfacePoint& point, const Hit& hit, const ScatteredRay& ray, int index, Vec3f throughput,
-                    PathLight& light) const;
+                    Path& path) const;
   bool scatter(const Vertex& vertex, const SurfacePoint& point, Sampler& sampler, ScatteredRay& ray,
                Vec3f& throughput) const;
-  void add_lights(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_indirect_samples(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_all_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_some_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_chosen(const Vertex& vertex, LightSelection::Pick chosen, Vec3f throughput, Sampler& sampler,
-                  PathLight& light) const;
-  void add_one_punctual(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_light_subpath(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void connect(const Vertex& vertex, const LightRay& arriving, const Hit& hit, Vec3f throughput, Sampler& sampler,
-               PathLight& light) const;
-  void add_emissive(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_environments(const Vertex& vertex, Vec3f throughput, Sampler& sampler, PathLight& light) const;
-  void add_missed(const ScatteredRay& ray, int index, Vec3f throughput, PathLight& light) const;
-  Vec3f light_through(const Vertex& vertex, Vec3f to_light, float distance, ClearSurfaces clear,
-                      Sampler& sampler) const;
+  void add_if_seen(const Vertex& vertex, std::size_t source, const LightSample& from, Vec3f value, Path& path) const;
+  void add_lights(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_indirect_samples(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_all_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_some_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_chosen(const Vertex& vertex, LightSelection::Pick chosen, Vec3f throughput, Path& path) const;
+  void add_one_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  Path start_path(Sampler& sampler, PathLight& light) const;
+  std::vector<LightVertex> trace_light_subpath(Sampler& sampler) const;
+  void connect(const Vertex& vertex, const LightVertex& y, Vec3f throughput, Path& path) const;
+  void add_emissive(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_environments(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_missed(const ScatteredRay& ray, int index, Vec3f throughput, Path& path) const;
+  Vec3f light_through(const Vertex& vertex, const LightSample& from, std::uint32_t alpha_seed) const;
   Vec3f light_along(const Ray& ray, const Media* media) const;
 
   const RayTracer& tracer_;
