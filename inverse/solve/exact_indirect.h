@@ -23,6 +23,7 @@ class ExactIndirect {
 
   const renderer::RayTracer& tracer() const { return tracer_; }
   const GatherOperator& gather() const { return gather_; }
+  const BakeSettings& settings() const { return settings_; }
 
  private:
   const renderer::RayTracer& tracer_;

@@ -28,10 +28,10 @@ Eigen::VectorXd squared_residuals(const Observations& observations) {
   return (observations.sqrt_weight.asDiagonal() * observations.wanted).rowwise().squaredNorm();
 }
 
-// (Σ e)² / Σ e²: of how many receivers the squared norm speaks.
-double effective_count(const Eigen::VectorXd& energy) {
-  const double squared = energy.squaredNorm();
-  return squared > 0 ? energy.sum() * energy.sum() / squared : double(energy.size());
+// So few of the receivers that were drawn hold nearly all that is left, and so few of those that they stand for.
+bool held_by_few(const Eigen::VectorXd& energy, const Eigen::VectorXd& stands_for) {
+  return effective_part(energy, Eigen::VectorXd::Ones(energy.size())) <= kFew &&
+         effective_part(energy, stands_for) <= kFew;
 }
 
 // The few that hold nearly all of the light.
@@ -188,7 +188,7 @@ LightEstimates find_lights_beside_surfaces(const LightResponse& response, const 
   LightEstimates found;
   while (int(found.size()) < most && anything_wanted(left)) {
     const Eigen::VectorXd energy = squared_residuals(left);
-    if (effective_count(energy) > kFew * double(energy.size())) break;
+    if (!held_by_few(energy, left.stands_for)) break;
     LightEstimates one{SingleLight(response, exact, left).find()};
     exact.correct_by_paths(response, one);
     left = less(std::move(left), response, one);

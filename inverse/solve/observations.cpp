@@ -91,6 +91,11 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
   return fit;
 }
 
+double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stands_for) {
+  const double squared = energy.cwiseAbs2().cwiseQuotient(stands_for).sum();
+  return squared > 0 ? energy.sum() * energy.sum() / squared / stands_for.sum() : 1;
+}
+
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      VisibilitySource visibility) {
   std::vector<Column> columns(lights.size());

@@ -53,6 +53,10 @@ struct IntensityFit {
 };
 IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns);
 
+// Of how large a part of all receivers a squared norm speaks: (Σ e)² / Σ e² over their count, estimated from receivers
+// that stand for them. energy: what each of these adds to the norm, in the name of all that it stands for.
+double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stands_for);
+
 // Columns of all lights with their corrections, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      VisibilitySource visibility);

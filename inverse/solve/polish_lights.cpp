@@ -8,10 +8,11 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kGatheredRounds = 4, kTracedRounds = 2;
-constexpr double kAtRest = 2e-4;     // of the region's diagonal
-constexpr double kSettle = 3e-3;     // first steps across shadow edges, of the region's diagonal
-constexpr double kExplained = 1.05;  // times the noise: an error that leaves nothing to mend
+constexpr int kRounds = 4;
+constexpr double kAtRest = 2e-4;  // of the region's diagonal
+constexpr double kSettle = 3e-3;  // first steps across shadow edges, of the region's diagonal
+
+}  // namespace
 
 double largest_move(const LightEstimates& a, const LightEstimates& b) {
   double move = 0;
@@ -19,14 +20,13 @@ double largest_move(const LightEstimates& a, const LightEstimates& b) {
   return move;
 }
 
-using Corrector = void (ExactIndirect::*)(const LightResponse&, LightEstimates&) const;
-
-void descend(const ExactIndirect& exact, Corrector correct, int most_rounds, const LightResponse& response,
-             const Observations& observations, PolishedLights& polished) {
+PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
+                             const Observations& observations, const LightEstimates& start) {
+  PolishedLights polished{start, 0, 0};
   const double diagonal = double(response.grid().region.diagonal());
   double move = std::numeric_limits<double>::infinity();
-  for (int round = 0; move > kAtRest * diagonal && round < most_rounds; ++round) {
-    (exact.*correct)(response, polished.lights);
+  while (move > kAtRest * diagonal && polished.rounds < kRounds) {
+    exact.correct(response, polished.lights);
     const JointRefinement refined = refine_joint(response, observations, polished.lights);
     SettledLights settled = settle_positions(response, observations, refined.lights, kSettle * diagonal);
     move = largest_move(settled.lights, polished.lights);
@@ -34,20 +34,7 @@ void descend(const ExactIndirect& exact, Corrector correct, int most_rounds, con
     polished.error = settled.error;
     ++polished.rounds;
   }
-}
-
-}  // namespace
-
-PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
-                             const Observations& observations, const LightEstimates& start) {
-  PolishedLights gathered{start, 0, 0};
-  descend(exact, &ExactIndirect::correct, kGatheredRounds, response, observations, gathered);
-  if (gathered.error <= kExplained * observations.noise) return gathered;
-  PolishedLights traced = gathered;
-  descend(exact, &ExactIndirect::correct_by_paths, kTracedRounds, response, observations, traced);
-  if (traced.error < gathered.error) return traced;
-  gathered.rounds = traced.rounds;
-  return gathered;
+  return polished;
 }
 
 }  // namespace chiaro::inverse

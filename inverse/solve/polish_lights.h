@@ -11,9 +11,12 @@ struct PolishedLights {
   int rounds = 0;
 };
 
-// The last descent, without interpolation: indirect light is computed at the lights' very positions, and its difference
-// from the interpolated one is carried along as a constant while the lights are refined and settle across shadow
-// edges; again until they rest. By gathering first, and by path tracing where that leaves more than the noise.
+// Metres; the farthest that a light has come from a to b.
+double largest_move(const LightEstimates& a, const LightEstimates& b);
+
+// The last descent over the important vertices, without interpolation: indirect light is gathered at the lights' very
+// positions, and its difference from the interpolated one is carried along as a constant while the lights are refined
+// and settle across shadow edges; again until they rest.
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start);
 

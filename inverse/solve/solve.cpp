@@ -8,9 +8,11 @@
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/important_vertices.h"
 #include "inverse/solve/lights_beside_surfaces.h"
+#include "inverse/solve/observe_target.h"
 #include "inverse/solve/optimize_simplex.h"
 #include "inverse/solve/polish_lights.h"
 #include "inverse/solve/prepare_transport.h"
+#include "inverse/solve/refine_over_many.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/stage_clock.h"
 #include "renderer/core/error.h"
@@ -23,9 +25,11 @@ using renderer::Error;
 constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
 constexpr double kVerificationPaths = 2e7;        // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
-constexpr int kFixedSamples = 512;
-constexpr double kNegligible = 1e-3;  // contribution to the target's norm
-constexpr double kOnSurface = 0.5;    // of a target's receivers must lie on the scene
+constexpr int kFixedSamples = 512;       // per important vertex
+constexpr int kFixedSamplesOfMany = 32;  // per receiver of the last refinement …
+constexpr std::size_t kMany = 50000;     // … of so many at most
+constexpr double kNegligible = 1e-3;     // contribution to the target's norm
+constexpr double kOnSurface = 0.5;       // of a target's receivers must lie on the scene
 
 // Seeds of a solve's own path tracing differ from those that a target was traced with, whatever seed the user gave
 // both.
@@ -56,51 +60,10 @@ bool has_fixed_light(const SolveProblem& problem) {
 
 // What shines without the lights sought: emissive surfaces and kept lights.
 std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
-                                      const SolveOptions& options, const renderer::Control& control) {
+                                      int samples, const SolveOptions& options, const renderer::Control& control) {
   if (!has_fixed_light(problem)) return std::vector<Vec3f>(at.size());
-  const renderer::TraceOptions trace{kFixedSamples, problem.bake.bounces, fresh_seed(options.seed, 1), true};
+  const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, 1), true};
   return trace_illumination(problem.tracer, at, problem.kept_lights, trace, control).value;
-}
-
-Column target_at(const Target& target, const std::vector<std::size_t>& chosen) {
-  Column column(Eigen::Index(chosen.size()), 3);
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    for (int c = 0; c < 3; ++c) column(Eigen::Index(i), c) = double(target.illumination[chosen[i]][c]);
-  }
-  return column;
-}
-
-// By (3.6) over the important vertices as published.
-Observations observe(const Target& target, const Importance& importance, const std::vector<Vec3f>& fixed) {
-  const std::vector<std::size_t>& chosen = importance.chosen;
-  Observations o;
-  const Column wanted = target_at(target, chosen);
-  o.wanted = wanted;
-  o.sqrt_weight.resize(wanted.rows());
-  o.stands_for.resize(wanted.rows());
-  for (Eigen::Index i = 0; i < wanted.rows(); ++i) {
-    o.stands_for[i] = 1 / importance.probability[std::size_t(i)];
-    o.sqrt_weight[i] = std::sqrt(double(target.weight[chosen[std::size_t(i)]]));
-    for (int c = 0; c < 3; ++c) o.wanted(i, c) -= double(fixed[std::size_t(i)][c]);
-  }
-  o.target = wanted;
-  o.standard_error = Eigen::VectorXd::Zero(wanted.rows());
-  for (std::size_t i = 0; i < chosen.size() && !target.standard_error.empty(); ++i) {
-    o.standard_error[Eigen::Index(i)] = double(target.standard_error[chosen[i]]);
-  }
-  o.measure_target();
-  return o;
-}
-
-// sqrt(Σ w se²) / sqrt(Σ w Ψ²) over all receivers; 0 where the target does not say.
-double target_noise(const Target& target) {
-  if (target.standard_error.empty()) return 0;
-  double error = 0, value = 0;
-  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
-    error += 3 * double(target.weight[i]) * double(target.standard_error[i]) * double(target.standard_error[i]);
-    value += double(target.weight[i]) * double(length_squared(target.illumination[i]));
-  }
-  return value > 0 ? std::sqrt(error / value) : 0;
 }
 
 std::vector<std::size_t> all_indices(std::size_t count) {
@@ -172,11 +135,45 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light"};
 }
 
-Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& response, const Observations& searched,
-                         const Observations& judged, LightEstimates beside_surfaces, const LightTree& tree,
-                         const SolveOptions& options, StageClock& clock) {
+struct JointSearch {
+  const SolveProblem& problem;
+  const SolveOptions& options;
+  const renderer::Control& control;
+  const LightResponse& response;
+  const ExactIndirect& exact;
+  const Observations& searched;  // no receiver hides the light of all others
+  const Observations& judged;    // as (3.6) judges them
+};
+
+// The lights refined over many receivers. Those beside surfaces, whose neighbours may not be among the many, stay.
+LightEstimates refined_over_many(const JointSearch& search, const LightEstimates& lights,
+                                 const LightEstimates& beside_surfaces, StageClock& clock) {
+  const SolveProblem& problem = search.problem;
+  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const auto samples = select(problem.target.receivers.samples, draw.chosen);
+  const TransportCache direct = direct_transport(search.response.grid(), samples.size());
+  const LightResponse response(problem.tracer, samples, direct);
+  Observations observations = observe_target(
+      problem.target, draw, fixed_illumination(problem, samples, kFixedSamplesOfMany, search.options, search.control));
+  if (!beside_surfaces.empty()) observations = with_capped_weights(observations);
+  BakeSettings settings = search.exact.settings();
+  settings.seed = fresh_seed(search.options.seed, 4);
+  PolishedLights refined =
+      refine_over_many({problem.tracer, response, observations, settings}, lights, beside_surfaces);
+  search.exact.correct(search.response, refined.lights);
+  clock.finish("refinement_over_many", {{"receivers", double(samples.size())},
+
+                                        {"rounds", refined.rounds},
+                                        {"relative_l2", refined.error}});
+  return joined(beside_surfaces, refined.lights);
+}
+
+Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
+                         StageClock& clock) {
+  const SolveOptions& options = search.options;
+  const LightResponse& response = search.response;
   const int already = int(beside_surfaces.size());
-  Observations remaining = less(searched, response, beside_surfaces);
+  Observations remaining = less(search.searched, response, beside_surfaces);
   const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
                                options.max_lights - already};
   const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
@@ -192,8 +189,9 @@ Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& respon
   LightCountResult count = find_the_rest();
   if (already > 0) {
     // What was found first was found beside the light of all others.
-    beside_surfaces = refine_lights_beside_surfaces(response, exact, judged, beside_surfaces, count.lights);
-    remaining = less(searched, response, beside_surfaces);
+    beside_surfaces =
+        refine_lights_beside_surfaces(response, search.exact, search.judged, beside_surfaces, count.lights);
+    remaining = less(search.searched, response, beside_surfaces);
     count = find_the_rest();
   }
   StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}};
@@ -201,13 +199,13 @@ Optimum optimize_jointly(const ExactIndirect& exact, const LightResponse& respon
     figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
   }
   clock.finish("joint_refinement", figures);
-  // The last descent is by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
+  // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
   // blind to all others.
-  const Observations& last = beside_surfaces.empty() ? judged : remaining;
-  const PolishedLights polished = polish_lights(exact, response, last, count.lights);
+  const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
+  const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  const LightEstimates all = joined(beside_surfaces, polished.lights);
-  return {options.exact_lights > 0 ? all : without_negligible(response, judged, all), start,
+  const LightEstimates all = refined_over_many(search, polished.lights, beside_surfaces, clock);
+  return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more"};
@@ -253,8 +251,8 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
                                                 {"indirect_relative_error", transport.cache.indirect_relative_error}});
   const auto samples = select(problem.target.receivers.samples, importance.chosen);
-  const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, options, control);
-  const Observations published = observe(problem.target, importance, fixed);
+  const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
+  const Observations published = observe_target(problem.target, {importance.chosen, importance.probability}, fixed);
   if (!(published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
   const LightResponse response(problem.tracer, samples, transport.cache);
@@ -284,9 +282,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const LightTree tree = make_light_tree(response, remaining, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
-  const Optimum optimum =
-      joint ? optimize_jointly(*exact, response, searched, judged, beside_surfaces, tree, options, clock)
-            : optimize_as_published(response, published, tree, options, clock);
+  const Optimum optimum = joint ? optimize_jointly({problem, options, control, response, *exact, searched, judged},
+                                                   beside_surfaces, tree, clock)
+                                : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
   result.lights = found_lights(response, judged, optimum.lights);

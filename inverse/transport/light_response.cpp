@@ -2,6 +2,7 @@
 
 #include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/gather_operator.h"
+#include "renderer/core/control.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::inverse {
@@ -86,14 +87,21 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Visibili
                                               const std::vector<Weight>& weights) const {
   std::vector<double> visible(receivers_.size(), 0);
   const Vec3f light = to_vec3f(position);
+  if (source == VisibilitySource::kTraced) {
+    constexpr std::size_t kBlock = 1024;
+    renderer::parallel_for((receivers_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+      for (std::size_t i = block * kBlock; i < std::min(receivers_.size(), (block + 1) * kBlock); ++i) {
+        const SurfaceSample& at = receivers_[i];
+        if (dot(light - at.position, at.normal) <= 0) continue;
+        const Vec3f from = renderer::offset_point(at.position, at.normal);
+        visible[i] = tracer_.occluded_between(from, light, std::uint32_t(i)) ? 0 : 1;
+      }
+    });
+    return visible;
+  }
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     const SurfaceSample& at = receivers_[i];
     if (dot(light - at.position, at.normal) <= 0) continue;
-    if (source == VisibilitySource::kTraced) {
-      const Vec3f from = renderer::offset_point(at.position, at.normal);
-      visible[i] = tracer_.occluded_between(from, light, std::uint32_t(i)) ? 0 : 1;
-      continue;
-    }
     // Nodes behind the receiver know nothing of what stands in front of it.
     double total = 0;
     for (const Weight& w : weights) {

@@ -212,6 +212,16 @@ TEST(LightsBesideSurfaces, AreNoneWhereNoneOutshinesTheRest) {
   EXPECT_TRUE(find_lights_beside_surfaces(problem.response(), problem.exact(), problem.observations(), 10).empty());
 }
 
+TEST(LightsBesideSurfaces, AreNoneWhereAFewReceiversStandForMany) {
+  const DirectProblem problem(known_lights(3));
+  Observations drawn = problem.observations();
+  for (const Eigen::Index i : {20, 110, 200}) {
+    drawn.stands_for[i] = 1000;
+    drawn.sqrt_weight[i] = std::sqrt(1000.0);
+  }
+  EXPECT_TRUE(find_lights_beside_surfaces(problem.response(), problem.exact(), drawn, 10).empty());
+}
+
 class CountedLights : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(CountedLights, AreCountedAndFound) {

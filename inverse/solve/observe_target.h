@@ -1,0 +1,23 @@
+#pragma once
+
+#include "inverse/solve/observations.h"
+#include "inverse/target/target.h"
+
+namespace chiaro::inverse {
+
+// Receivers drawn from all of a target's.
+struct ReceiverDraw {
+  std::vector<std::size_t> chosen;  // ascending
+  std::vector<double> probability;  // with which each of them was to be chosen
+};
+
+// At most `most` receivers of positive weight, spread evenly over all of them.
+ReceiverDraw draw_evenly(const Target& target, std::size_t most);
+
+// What (3.6) asks of these receivers, each by itself. `fixed`: their light without the lights sought, cd/m².
+Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed);
+
+// sqrt(Σ weight · se²) / sqrt(Σ weight · Ψ²) over all receivers; 0 where the target does not say.
+double target_noise(const Target& target);
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "inverse/solve/polish_lights.h"
+
+namespace chiaro::inverse {
+
+// A transport in which light arrives directly only, for any number of receivers; lights may stand where `grid` has
+// them.
+TransportCache direct_transport(const LightGrid& grid, std::size_t receivers);
+
+struct ManyReceivers {
+  const renderer::RayTracer& tracer;
+  const LightResponse& response;  // direct_transport's
+  const Observations& observations;
+  BakeSettings settings;
+};
+
+// Refines lights that the important vertices have found over many receivers: these see where shadows end as the few
+// cannot, and together they are less noisy. The indirect light of all lights is path traced, a little at each receiver,
+// and again where the lights have come to. `others` stay as they are.
+PolishedLights refine_over_many(const ManyReceivers& many, const LightEstimates& start, const LightEstimates& others);
+
+}  // namespace chiaro::inverse
