@@ -67,6 +67,7 @@ void add_attributes(renderer::Attributes& attributes, const renderer::Frame& fra
   if (options.noise_threshold > 0) attributes.emplace_back("chiaro:noise_threshold", float(options.noise_threshold));
   if (options.clamp_direct) attributes.emplace_back("chiaro:clamp_direct", *options.clamp_direct);
   if (options.clamp_indirect) attributes.emplace_back("chiaro:clamp_indirect", *options.clamp_indirect);
+  if (options.wide_highlights) attributes.emplace_back("chiaro:wide_highlights", 1);
   if (frame.dropped_samples > 0) attributes.emplace_back("chiaro:dropped_samples", float(frame.dropped_samples));
   if (frame.interrupted) attributes.emplace_back("chiaro:interrupted", 1);
   if (options.lens.f_number) attributes.emplace_back("aperture", *options.lens.f_number);
@@ -92,6 +93,8 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
   add_number(command, {"--clamp-direct", "L", "Most cd/m² of a sample's direct light, which biases (default: none)"},
              options.clamp_direct, kPositive);
   add_number(command, {"--clamp-indirect", "L", "The same of indirect light"}, options.clamp_indirect, kPositive);
+  add_flag(command, "--wide-highlights", options.wide_highlights,
+           "Mirrors show point lights as lamps of a centimetre, and throw blurred caustics: less noise, but biased");
   add_lens_options(command, options.lens);
   add_text(command, {"--output-space", "NAME", "Scene-linear colour space of the EXR (default: Rec.709)"},
            options.output_space);
@@ -108,9 +111,11 @@ void require_color_choices(const FrameOptions& options, bool preview) {
 renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,
                              const renderer::Lights& lights, const FrameOptions& options, const FrameRun& run) {
   const std::array<int, 2> size = frame_size(camera, options.size);
+  renderer::TraceOptions trace = run.trace;
+  trace.wide_highlights = options.wide_highlights;
   const renderer::RenderOptions render_options{.width = size[0],
                                                .height = size[1],
-                                               .trace = run.trace,
+                                               .trace = trace,
                                                .time_limit = options.time_limit,
                                                .noise_threshold = options.noise_threshold,
                                                .clamp_direct = options.clamp_direct.value_or(renderer::kInfinity),

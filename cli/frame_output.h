@@ -21,6 +21,7 @@ struct FrameOptions {
   double time_limit = 0;                              // seconds; 0: none
   double noise_threshold = 0;                         // 0: none
   std::optional<float> clamp_direct, clamp_indirect;  // cd/m²
+  bool wide_highlights = false;
   LensOptions lens;
   std::vector<std::string> layers;
   bool full_float = false;

@@ -18,8 +18,8 @@ constexpr float kLeastBending = 0.01F;  // of eta from 1; less does not refract
 float least_alpha(float roughness) { return std::max(roughness * roughness, kLeastAlpha); }
 
 float widened_alpha(float alpha, LightSource source) {
-  if (source == LightSource::kExtended) return alpha;
-  return std::max(alpha, source == LightSource::kPunctual ? kPunctualAlpha : kBlurredAlpha);
+  if (source == LightSource::kPunctualWidened) return std::max(alpha, kPunctualAlpha);
+  return source == LightSource::kPunctualBlurred ? std::max(alpha, kBlurredAlpha) : alpha;
 }
 
 bool is_rough(float alpha) { return alpha >= kBlurredAlpha; }
@@ -73,7 +73,7 @@ float BsdfBase::facet_transmittance(float cosine) const {
 
 Vec3f BsdfBase::reflection(Vec3f wo, Vec3f wi, float alpha, float diffuse_fade) const {
   const Vec3f h = normalize(wo + wi);
-  const float specular = ggx::distribution(h.z, alpha) * ggx::visibility(wo.z, wi.z, alpha);
+  const float specular = ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha);
   const Vec3f facets = specular * facet_reflectance(dot(wo, h));
   const float diffusion = (1 - metallic_) * diffusion_ * diffuse_fade;
   if (!(diffusion > 0)) return wi.z * facets;

@@ -22,9 +22,9 @@ namespace chiaro::renderer {
 // The size of the source that light comes from, as far as scattering needs to know.
 enum class LightSource : std::uint8_t {
   kExtended,  // emitting surfaces, skies: found by scattered rays too
-  // Punctual lights, which scattered rays never meet. Mirrors show them as a lamp's size would; clear surfaces leave
-  // them to shadow rays.
-  kPunctual,
+  kPunctual,  // never met by scattered rays; clear surfaces leave them to shadow rays
+  // Mirrors show them as a lamp's size would.
+  kPunctualWidened,
   // The same after rough scattering: mirrors and polish throw blurred caustics instead of rare bright dots.
   // Source: Kaplanyan & Dachsbacher, Path Space Regularization for Holistic and Robust Light Transport, 2013.
   kPunctualBlurred,

@@ -21,7 +21,7 @@ Vec3f BsdfClearcoat::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) c
   const float alpha = widened_alpha(alpha_, source);
   const Vec3f h = normalize(wo + wi);
   const float fresnel = kF0 + (1 - kF0) * schlick_weight(dot(wo, h));
-  const float value = strength_ * fresnel * ggx::distribution(h.z, alpha) * ggx::visibility(wo.z, wi.z, alpha) * wi.z;
+  const float value = strength_ * fresnel * ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha) * wi.z;
   return {value, value, value};
 }
 

@@ -8,9 +8,9 @@
 
 namespace chiaro::renderer::ggx {
 
-inline float distribution(float cosine_h, float alpha) {
+inline float distribution(Vec3f h, float alpha) {
   const float a2 = alpha * alpha;
-  const float d = cosine_h * cosine_h * (a2 - 1) + 1;
+  const float d = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
   return a2 / (kPi * d * d);
 }
 
@@ -40,7 +40,7 @@ inline Vec3f sample_visible_normal(Vec3f wo, float alpha, Vec2f u) {
 
 // Density of the reflection about such a half vector, per steradian.
 inline float reflection_pdf(Vec3f wo, Vec3f h, float alpha) {
-  return masking(wo.z, alpha) * distribution(h.z, alpha) / (4 * wo.z);
+  return masking(wo.z, alpha) * distribution(h, alpha) / (4 * wo.z);
 }
 
 }  // namespace chiaro::renderer::ggx

@@ -31,13 +31,13 @@ inline Transmission refraction(Vec3f wo, Vec3f wi, float alpha, float eta) {
   const float o = dot(wo, h), i = dot(wi, h);
   if (!(o > 0 && i < 0)) return {};
   const float denominator = o + eta * i;
-  const float common = distribution(h.z, alpha) * o * -i / (wo.z * denominator * denominator);
+  const float common = distribution(h, alpha) * o * -i / (wo.z * denominator * denominator);
   return {h, common * masking_shadowing(wo.z, -wi.z, alpha), common * masking(wo.z, alpha) * eta * eta};
 }
 
 inline Transmission thin_transmission(Vec3f wo, Vec3f wi, float alpha) {
   const Vec3f reflected = mirrored(wi), h = normalize(wo + reflected);
-  const float value = distribution(h.z, alpha) * visibility(wo.z, reflected.z, alpha) * reflected.z;
+  const float value = distribution(h, alpha) * visibility(wo.z, reflected.z, alpha) * reflected.z;
   return {h, value, reflection_pdf(wo, h, alpha)};
 }
 

@@ -51,7 +51,7 @@ void PathTracer::connect(const Vertex& v, const LightVertex& end, Vec3f throughp
   const Vertex y{point.position, point.geometric_normal, point.rounding, -to_end, &bsdf, v.index + 1};
   // A ray from behind the triangle does not arrive, whatever the smooth surface sees.
   const float cosine_light = y.incident_cosine(-from.direction), cosine_vertex = dot(y.normal, -to_end);
-  const Vec3f reflected = y.eval(-from.direction, LightSource::kPunctualBlurred) * from.intensity;
+  const Vec3f reflected = y.eval(-from.direction, punctual_source(true)) * from.intensity;
   if (!(max_component(reflected) > 0) || !(cosine_light > 0) || !(cosine_vertex > 0)) return;
 
   // Densities of y, per m², by this ray and by scattering at v followed by picking the same light.

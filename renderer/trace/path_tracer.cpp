@@ -40,14 +40,15 @@ double next_fine(Sampler& sampler) {
 
 }  // namespace
 
-PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission)
+PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const PathOptions& options)
     : tracer_(tracer),
       lights_(lights),
       selection_(lights),
       emission_(lights),
       subpath_reach_(kSubpathReach * tracer.bounds().diagonal()),
-      emitters_(scene_emission ? tracer.scene() : scene_without_emission()),
-      bounces_(bounces < 0 ? std::numeric_limits<int>::max() : bounces),
+      emitters_(options.scene_emission ? tracer.scene() : scene_without_emission()),
+      bounces_(options.bounces < 0 ? std::numeric_limits<int>::max() : options.bounces),
+      wide_highlights_(options.wide_highlights),
       clear_surfaces_(has_clear_surfaces(tracer.scene())),
       solids_(has_solids(tracer.scene())) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -55,6 +56,12 @@ PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, int bounce
       environments_.push_back({i, EnvironmentSampling(*light)});
     }
   }
+}
+
+// rough: after rough scattering.
+LightSource PathTracer::punctual_source(bool rough) const {
+  if (!wide_highlights_) return LightSource::kPunctual;
+  return rough ? LightSource::kPunctualBlurred : LightSource::kPunctualWidened;
 }
 
 // 0: nothing arrives, 1: nothing is in between.
@@ -276,7 +283,7 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
                         .area_pdf = scattered.pdf * cosine / (distance * distance),
                         .lift = point.lift,
                         .triangle_normal = point.geometric_normal,
-                        .punctual = scattered.rough ? LightSource::kPunctualBlurred : LightSource::kPunctual,
+                        .punctual = punctual_source(scattered.rough),
                         .media = solids_ ? &scattered.media : nullptr};
     add_lights(vertex, throughput, path);
     if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
@@ -297,8 +304,15 @@ void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int i
                                Sampler& sampler, PathLight& light) const {
   if (point.unlit) return;
   const Bsdf bsdf(point);
-  const Vertex vertex{point.position, point.geometric_normal, point.rounding, to_viewer, &bsdf, index, 0,
-                      point.lift,     point.geometric_normal};
+  const Vertex vertex{.position = point.position,
+                      .normal = point.geometric_normal,
+                      .rounding = point.rounding,
+                      .to_viewer = to_viewer,
+                      .bsdf = &bsdf,
+                      .index = index,
+                      .lift = point.lift,
+                      .triangle_normal = point.geometric_normal,
+                      .punctual = punctual_source(false)};
   Path path = start_path(sampler, light);
   add_lights(vertex, throughput, path);
   if (index == bounces_ && !has_emission() && !clear_surfaces_) return;

@@ -40,10 +40,17 @@ struct PathLight {
   }
 };
 
+// As TraceOptions'.
+struct PathOptions {
+  int bounces = -1;  // indirect ones, -1 = until Russian roulette ends the path
+  bool scene_emission = true;
+  bool wide_highlights = false;
+};
+
 class PathTracer {
  public:
-  // Keeps references to both, which must outlive it. bounces: indirect ones, -1 = until Russian roulette ends the path.
-  PathTracer(const RayTracer& tracer, const Lights& lights, int bounces, bool scene_emission);
+  // Keeps references to both, which must outlive it.
+  PathTracer(const RayTracer& tracer, const Lights& lights, const PathOptions& options);
 
   // Radiance leaving `vertex` towards to_viewer, its emission left out, times `throughput`, added to `light`.
   // `index` is the number of `vertex` on its path.
@@ -123,6 +130,7 @@ class PathTracer {
   void add_emissive(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_environments(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_missed(const ScatteredRay& ray, int index, Vec3f throughput, Path& path) const;
+  LightSource punctual_source(bool rough) const;
   Vec3f light_through(const Vertex& vertex, const LightSample& from, std::uint32_t alpha_seed) const;
   Vec3f light_along(const Ray& ray, const Media* media) const;
 
@@ -134,6 +142,7 @@ class PathTracer {
   EmissiveTriangles emitters_;
   std::vector<Environment> environments_;
   int bounces_;
+  bool wide_highlights_;
   bool clear_surfaces_, solids_;  // in the scene
 };
 

@@ -23,6 +23,9 @@ struct TraceOptions {
   int bounces = -1;   // indirect bounces; 0 = direct only, -1 = until Russian roulette ends the path
   std::uint64_t seed = 0;
   bool scene_emission = true;  // the scene's emissive surfaces give light too
+  // Mirrors show punctual lights as lamps of some size, and blurred in what they throw on other surfaces: bias for less
+  // noise, off unless asked for.
+  bool wide_highlights = false;
 };
 
 struct Illumination {

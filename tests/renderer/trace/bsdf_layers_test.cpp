@@ -232,7 +232,7 @@ TEST(BsdfLayers, MirrorsShowPunctualLightsWiderAndKeepTheirEnergy) {
   SurfacePoint point = layered_point({1, 1, 1}, 1, 0);
   const Bsdf bsdf(point);
   const Vec3f viewer = normalize(Vec3f{0.5F, 0, 1});
-  for (const LightSource source : {LightSource::kPunctual, LightSource::kPunctualBlurred}) {
+  for (const LightSource source : {LightSource::kPunctualWidened, LightSource::kPunctualBlurred}) {
     // Around the mirrored direction, which is the whole of a narrow lobe.
     const Frame3f frame({-viewer.x, -viewer.y, viewer.z});
     double sum = 0;

@@ -100,6 +100,34 @@ TEST(PathTracer, LightsOnAWallOrOnAReceiverGiveFiniteLight) {
   }
 }
 
+// A point light in polish, seen a little beside the mirrored direction: outside a highlight as narrow as the polish
+// asks for, inside one as wide as a lamp of a centimetre makes.
+TEST(PathTracer, HighlightsAreAsNarrowAsThePolishUnlessAskedToBeWide) {
+  Scene scene = test::plane_scene({0, 0, 0});
+  scene.materials[0] = {};
+  scene.materials[0].metallic = 1;
+  scene.materials[0].roughness = 0.03F;
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {1, 1, 0}, {1, 1, 1}}};
+  const Ray ray{{-1.04F, 1, 0}, normalize(Vec3f{1.04F, -1, 0})};
+  const auto hit = tracer.intersect(ray);
+  ASSERT_TRUE(hit);
+  const SurfacePoint point = make_surface_point(scene, ray, *hit);
+  const Vec3f to_light = normalize(Vec3f{1, 1, 0} - point.position);
+  const float irradiance = 1 / length_squared(Vec3f{1, 1, 0} - point.position);
+  float radiance[2] = {};
+  for (const bool wide : {false, true}) {
+    PathLight light;
+    Sampler sampler(1, 0, 0);
+    PathTracer(tracer, lights, {0, true, wide}).add_scattered(point, -ray.direction, 0, {1, 1, 1}, sampler, light);
+    const LightSource source = wide ? LightSource::kPunctualWidened : LightSource::kPunctual;
+    const float expected = Bsdf(point).eval(-ray.direction, to_light, source).x * irradiance;
+    EXPECT_NEAR(light.direct.x, expected, 1e-4F * expected) << wide;
+    radiance[wide ? 1 : 0] = light.direct.x;
+  }
+  EXPECT_LT(radiance[0], 0.1F * radiance[1]);
+}
+
 TEST(PathTracer, LightIsTakenApartByItsSource) {
   Scene scene = test::corner_with_ball();
   test::add_mesh(scene, test::rectangle({1, 2.5F, 1}, {1, 0, 0}, {0, 0, 1}), test::lambert({0, 0, 0}, {5, 5, 5}),
@@ -107,7 +135,7 @@ TEST(PathTracer, LightIsTakenApartByItsSource) {
   const RayTracer tracer(scene);
   const Lights lights{PointLight{"", {3, 2, 3}, {10, 8, 6}},
                       SpotLight{"", {1, 2, 3}, {0, -1, 0}, {9, 9, 9}, 0.3F, 0.7F}};
-  const PathTracer paths(tracer, lights, -1, true);
+  const PathTracer paths(tracer, lights, {});
   PathLight light;
   light.per_light.assign(3, Vec3f{});
   for (std::uint32_t k = 0; k < 2000; ++k) {
