@@ -52,7 +52,7 @@ Column light_beside(const ManyReceivers& many, const LightEstimates& lights, con
   const std::size_t paths = kPathsPerSample * std::size_t(many.settings.samples) / at.size();
   const renderer::TraceOptions trace{std::clamp(int(paths), kLeastPaths, kMostPaths), many.settings.bounces,
                                      many.settings.seed, false};
-  const std::vector<Vec3f> traced = trace_illumination(many.tracer, at, all, trace).value;
+  const std::vector<Vec3f> traced = trace_illumination(many.tracer, at, all, trace, many.control).value;
   Column beside(Eigen::Index(at.size()), 3);
   for (std::size_t i = 0; i < at.size(); ++i) beside.row(Eigen::Index(i)) = to_eigen(traced[i]).transpose();
   for (const LightEstimate& light : lights) {

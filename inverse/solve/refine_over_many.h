@@ -13,6 +13,7 @@ struct ManyReceivers {
   const LightResponse& response;  // direct_transport's
   const Observations& observations;
   BakeSettings settings;
+  const renderer::Control& control;
 };
 
 // Refines lights that the important vertices have found over many receivers: these see where shadows end as the few

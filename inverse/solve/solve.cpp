@@ -159,7 +159,7 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   BakeSettings settings = search.exact.settings();
   settings.seed = fresh_seed(search.options.seed, 4);
   PolishedLights refined =
-      refine_over_many({problem.tracer, response, observations, settings}, lights, beside_surfaces);
+      refine_over_many({problem.tracer, response, observations, settings, search.control}, lights, beside_surfaces);
   search.exact.correct(search.response, refined.lights);
   clock.finish("refinement_over_many", {{"receivers", double(samples.size())},
 
@@ -204,7 +204,8 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
   const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  const LightEstimates all = refined_over_many(search, polished.lights, beside_surfaces, clock);
+  const LightEstimates all = count.out_of_time ? joined(beside_surfaces, polished.lights)
+                                               : refined_over_many(search, polished.lights, beside_surfaces, clock);
   return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"

@@ -36,7 +36,7 @@ class RefineOverMany : public ::testing::Test {
     const Observations observations = observe_target(target, draw, std::vector<Vec3f>(draw.chosen.size()));
     BakeSettings settings = bake_settings(bounces);
     settings.seed = 5;
-    return refine_over_many({corner_.tracer(), response, observations, settings}, start, others).lights;
+    return refine_over_many({corner_.tracer(), response, observations, settings, {}}, start, others).lights;
   }
 
   void expect_near(const LightEstimates& found, const LightEstimates& known, double metres, double intensity) const {
