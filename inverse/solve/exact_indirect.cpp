@@ -8,10 +8,10 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kSamplesFactor = 4;                   // gather rays per receiver, over those of the bake
-constexpr int kPointsPerSample = 16;                // gather points over rays
-constexpr std::size_t kPathsPerSample = 16000;      // of all lights together, over rays per receiver of the bake …
-constexpr int kLeastPaths = 16, kMostPaths = 8192;  // … per light and receiver
+constexpr int kSamplesFactor = 4;                    // gather rays per receiver, over those of the bake
+constexpr int kPointsPerSample = 16;                 // gather points over rays
+constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …
+constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver
 
 // Makes the light's indirect illumination indirect(receiver, channel), where it stands now.
 template <class Indirect>

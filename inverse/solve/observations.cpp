@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "inverse/numerics/nnls.h"
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
@@ -27,6 +28,13 @@ double quantile(const Eigen::VectorXd& brightness, const Eigen::VectorXd& stands
 }
 
 }  // namespace
+
+renderer::PointLight point_light(const LightEstimate& estimate) {
+  renderer::PointLight light;
+  light.position = to_vec3f(estimate.position);
+  light.intensity = to_vec3f(estimate.intensity.matrix());
+  return light;
+}
 
 void Observations::measure_target() {
   target_norm = (sqrt_weight.asDiagonal() * target).norm();

@@ -36,6 +36,8 @@ struct LightEstimate {
 };
 using LightEstimates = std::vector<LightEstimate>;
 
+renderer::PointLight point_light(const LightEstimate& estimate);
+
 // ‖ weighted column times intensity ‖: the light's contribution (3.5).
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity);
 

@@ -41,12 +41,7 @@ std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const 
 Column light_beside(const ManyReceivers& many, const LightEstimates& lights, const LightEstimates& others) {
   renderer::Lights all;
   for (const LightEstimates* some : {&lights, &others}) {
-    for (const LightEstimate& estimate : *some) {
-      renderer::PointLight light;
-      light.position = to_vec3f(estimate.position);
-      light.intensity = to_vec3f(estimate.intensity.matrix());
-      all.emplace_back(light);
-    }
+    for (const LightEstimate& estimate : *some) all.emplace_back(point_light(estimate));
   }
   const std::vector<renderer::SurfaceSample>& at = many.response.receivers();
   const std::size_t paths = kPathsPerSample * std::size_t(many.settings.samples) / at.size();

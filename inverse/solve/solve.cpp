@@ -72,13 +72,6 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   return indices;
 }
 
-renderer::PointLight point_light(const LightEstimate& e, std::size_t number) {
-  renderer::PointLight light;
-  light.name = fmt::format("light{}", number);
-  for (int a = 0; a < 3; ++a) light.position[a] = float(e.position[a]), light.intensity[a] = float(e.intensity[a]);
-  return light;
-}
-
 // Brightest contribution first.
 std::vector<FoundLight> found_lights(const LightResponse& response, const Observations& observations,
                                      const LightEstimates& lights) {
@@ -91,7 +84,10 @@ std::vector<FoundLight> found_lights(const LightResponse& response, const Observ
   std::vector<std::size_t> order = all_indices(lights.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   std::vector<FoundLight> found;
-  for (const std::size_t j : order) found.push_back({point_light(lights[j], found.size() + 1), norm[j] / total});
+  for (const std::size_t j : order) {
+    found.push_back({point_light(lights[j]), norm[j] / total});
+    found.back().light.name = fmt::format("light{}", found.size());
+  }
   return found;
 }
 
@@ -161,10 +157,8 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   PolishedLights refined =
       refine_over_many({problem.tracer, response, observations, settings, search.control}, lights, beside_surfaces);
   search.exact.correct(search.response, refined.lights);
-  clock.finish("refinement_over_many", {{"receivers", double(samples.size())},
-
-                                        {"rounds", refined.rounds},
-                                        {"relative_l2", refined.error}});
+  clock.finish("refinement_over_many",
+               {{"receivers", double(samples.size())}, {"rounds", refined.rounds}, {"relative_l2", refined.error}});
   return joined(beside_surfaces, refined.lights);
 }
 

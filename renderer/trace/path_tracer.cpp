@@ -40,7 +40,7 @@ double next_fine(Sampler& sampler) {
 
 }  // namespace
 
-PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const PathOptions& options)
+PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options)
     : tracer_(tracer),
       lights_(lights),
       selection_(lights),
@@ -62,6 +62,20 @@ PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const Path
 LightSource PathTracer::punctual_source(bool rough) const {
   if (!wide_highlights_) return LightSource::kPunctual;
   return rough ? LightSource::kPunctualBlurred : LightSource::kPunctualWidened;
+}
+
+// As a camera's ray finds it.
+PathTracer::Vertex PathTracer::vertex_at(const SurfacePoint& point, const Bsdf& bsdf, Vec3f to_viewer,
+                                         int index) const {
+  return {.position = point.position,
+          .normal = point.geometric_normal,
+          .rounding = point.rounding,
+          .to_viewer = to_viewer,
+          .bsdf = &bsdf,
+          .index = index,
+          .lift = point.lift,
+          .triangle_normal = point.geometric_normal,
+          .punctual = punctual_source(false)};
 }
 
 // 0: nothing arrives, 1: nothing is in between.
@@ -274,17 +288,10 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
       continue;
     }
     const float cosine = dot(point.geometric_normal, to_viewer), distance = scattered.travelled + hit->distance;
-    const Vertex vertex{.position = point.position,
-                        .normal = point.geometric_normal,
-                        .rounding = point.rounding,
-                        .to_viewer = to_viewer,
-                        .bsdf = &bsdf,
-                        .index = index,
-                        .area_pdf = scattered.pdf * cosine / (distance * distance),
-                        .lift = point.lift,
-                        .triangle_normal = point.geometric_normal,
-                        .punctual = punctual_source(scattered.rough),
-                        .media = solids_ ? &scattered.media : nullptr};
+    Vertex vertex = vertex_at(point, bsdf, to_viewer, index);
+    vertex.area_pdf = scattered.pdf * cosine / (distance * distance);
+    vertex.punctual = punctual_source(scattered.rough);
+    vertex.media = solids_ ? &scattered.media : nullptr;
     add_lights(vertex, throughput, path);
     if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
     if (!scatter(vertex, point, path.sampler, scattered, throughput)) return;
@@ -304,15 +311,7 @@ void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int i
                                Sampler& sampler, PathLight& light) const {
   if (point.unlit) return;
   const Bsdf bsdf(point);
-  const Vertex vertex{.position = point.position,
-                      .normal = point.geometric_normal,
-                      .rounding = point.rounding,
-                      .to_viewer = to_viewer,
-                      .bsdf = &bsdf,
-                      .index = index,
-                      .lift = point.lift,
-                      .triangle_normal = point.geometric_normal,
-                      .punctual = punctual_source(false)};
+  const Vertex vertex = vertex_at(point, bsdf, to_viewer, index);
   Path path = start_path(sampler, light);
   add_lights(vertex, throughput, path);
   if (index == bounces_ && !has_emission() && !clear_surfaces_) return;

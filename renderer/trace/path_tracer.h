@@ -20,6 +20,7 @@
 #include "renderer/trace/environment_sampling.h"
 #include "renderer/trace/light_sampling.h"
 #include "renderer/trace/light_selection.h"
+#include "renderer/trace/trace_options.h"
 
 namespace chiaro::renderer {
 
@@ -40,17 +41,10 @@ struct PathLight {
   }
 };
 
-// As TraceOptions'.
-struct PathOptions {
-  int bounces = -1;  // indirect ones, -1 = until Russian roulette ends the path
-  bool scene_emission = true;
-  bool wide_highlights = false;
-};
-
 class PathTracer {
  public:
-  // Keeps references to both, which must outlive it.
-  PathTracer(const RayTracer& tracer, const Lights& lights, const PathOptions& options);
+  // Keeps references to both, which must outlive it. How many samples are taken is the caller's business.
+  PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options);
 
   // Radiance leaving `vertex` towards to_viewer, its emission left out, times `throughput`, added to `light`.
   // `index` is the number of `vertex` on its path.
@@ -124,6 +118,7 @@ class PathTracer {
   void add_some_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_chosen(const Vertex& vertex, LightSelection::Pick chosen, Vec3f throughput, Path& path) const;
   void add_one_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  Vertex vertex_at(const SurfacePoint& point, const Bsdf& bsdf, Vec3f to_viewer, int index) const;
   Path start_path(Sampler& sampler, PathLight& light) const;
   std::vector<LightVertex> trace_light_subpath(Sampler& sampler) const;
   void connect(const Vertex& vertex, const LightVertex& y, Vec3f throughput, Path& path) const;

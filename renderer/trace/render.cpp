@@ -207,8 +207,7 @@ void count_samples(const Film& film, Frame& frame) {
 Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights, const RenderOptions& options,
              const Control& control) {
   const Clock clock(options.time_limit);
-  const PathTracer paths(tracer, lights,
-                         {options.trace.bounces, options.trace.scene_emission, options.trace.wide_highlights});
+  const PathTracer paths(tracer, lights, options.trace);
   const CameraRays rays(camera, options.width, options.height, options.lens);
   const PixelFilter filter = options.box_filter ? PixelFilter::box() : PixelFilter::blackman_harris();
   Film film(options.width, options.height, options.layers, lights, options.trace.samples);

@@ -55,7 +55,7 @@ Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceO
 
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control) {
-  const PathTracer paths(tracer, lights, {options.bounces, options.scene_emission, options.wide_highlights});
+  const PathTracer paths(tracer, lights, options);
   const bool with_punctual =
       has_blended_surfaces(tracer.scene()) ||
       lights.size() > std::max(LightSelection::kFew, kLightsPerPath * std::size_t(options.samples));

@@ -1,13 +1,13 @@
 #pragma once
 // Illumination at surface points by unbiased path tracing: the reference for all that inverse lighting computes.
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "renderer/core/control.h"
 #include "renderer/scene/light.h"
 #include "renderer/trace/ray_tracer.h"
+#include "renderer/trace/trace_options.h"
 
 namespace chiaro::renderer {
 
@@ -16,16 +16,6 @@ namespace chiaro::renderer {
 struct SurfaceSample {
   Vec3f position;
   Vec3f normal;  // unit; shading normal: the cosine is taken with it
-};
-
-struct TraceOptions {
-  int samples = 256;  // paths per point or pixel
-  int bounces = -1;   // indirect bounces; 0 = direct only, -1 = until Russian roulette ends the path
-  std::uint64_t seed = 0;
-  bool scene_emission = true;  // the scene's emissive surfaces give light too
-  // Mirrors show punctual lights as lamps of some size, and blurred in what they throw on other surfaces: bias for less
-  // noise, off unless asked for.
-  bool wide_highlights = false;
 };
 
 struct Illumination {

@@ -17,11 +17,7 @@ using Eigen::Vector3d;
 
 inline renderer::Lights point_lights(const LightEstimates& lights) {
   renderer::Lights result;
-  for (const LightEstimate& l : lights) {
-    const Eigen::Vector3f p = l.position.cast<float>();
-    const Eigen::Array3f i = l.intensity.cast<float>();
-    result.push_back(renderer::PointLight{"", {p.x(), p.y(), p.z()}, {i[0], i[1], i[2]}});
-  }
+  for (const LightEstimate& l : lights) result.emplace_back(point_light(l));
   return result;
 }
 

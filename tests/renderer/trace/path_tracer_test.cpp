@@ -119,7 +119,8 @@ TEST(PathTracer, HighlightsAreAsNarrowAsThePolishUnlessAskedToBeWide) {
   for (const bool wide : {false, true}) {
     PathLight light;
     Sampler sampler(1, 0, 0);
-    PathTracer(tracer, lights, {0, true, wide}).add_scattered(point, -ray.direction, 0, {1, 1, 1}, sampler, light);
+    PathTracer(tracer, lights, {.bounces = 0, .wide_highlights = wide})
+        .add_scattered(point, -ray.direction, 0, {1, 1, 1}, sampler, light);
     const LightSource source = wide ? LightSource::kPunctualWidened : LightSource::kPunctual;
     const float expected = Bsdf(point).eval(-ray.direction, to_light, source).x * irradiance;
     EXPECT_NEAR(light.direct.x, expected, 1e-4F * expected) << wide;
