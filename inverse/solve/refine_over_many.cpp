@@ -1,14 +1,16 @@
 // Gauss–Newton steps with weights by the residuals (iteratively reweighted least squares). Visibility is held during a
 // step. Receivers whose shadow is not where the target has it say nothing about which way to go, and would pull the
 // lights aside: their residuals are far beyond those of all others, and weigh little.
-// Source: Holland, Welsch, Robust Regression Using Iteratively Reweighted Least-Squares, 1977 (weights after Geman and
-// McClure, 1987).
+// Light by bounces is noisy, and least squares would dim what noise varies with: the residuals are made orthogonal to
+// the derivatives of direct light, which has none, and not to those of all light (instrumental variables).
+// Sources: Reiersøl, Confluence Analysis by Means of Instrumental Sets of Variables, 1945; Holland, Welsch, Robust
+// Regression Using Iteratively Reweighted Least-Squares, 1977 (weights after Geman and McClure, 1987).
 
 #include "inverse/solve/refine_over_many.h"
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
@@ -16,8 +18,8 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kRounds = 3, kSteps = 12;
-constexpr double kAtRest = 1e-4;                // of the region's diagonal, after a round
+constexpr int kRounds = 5, kSteps = 12;
+constexpr double kAtRest = 2e-4;                // of the region's diagonal, after a round
 constexpr double kStepAtRest = 1e-5;            // of the region's diagonal
 constexpr double kLongestStep = 0.01;           // of the region's diagonal
 constexpr double kOutlier = 3;                  // medians
@@ -26,6 +28,7 @@ constexpr double kLeastScale = 1e-3;            // of a receiver's brightness
 constexpr double kDark = 0.1;                   // brightness that residuals are compared with at least, in means of all
 constexpr std::size_t kPathsPerSample = 16000;  // of all receivers together, over rays per receiver of the bake
 constexpr int kLeastPaths = 16, kMostPaths = 8192;  // per receiver
+constexpr double kDarkest = 1e-20;                  // candela: a channel that shines
 constexpr double kDamping = 1e-9;                   // of the normal matrix' diagonal
 
 std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
@@ -36,9 +39,13 @@ std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const 
   return columns;
 }
 
-// All light that reaches the receivers, but for what comes straight from `lights`. Theirs by many bounces is in it too,
-// and does not vary with their intensities while they are fitted: noise in what varies would dim them.
-Column light_beside(const ManyReceivers& many, const LightEstimates& lights, const LightEstimates& others) {
+// The light that comes by bounces where the lights stand now. It is path traced, and noisy.
+struct TracedIndirect {
+  std::vector<Column> unity;  // of each light of 1 cd
+  Column others;              // all light of the others, their direct light too
+};
+
+TracedIndirect trace_indirect(const ManyReceivers& many, const LightEstimates& lights, const LightEstimates& others) {
   renderer::Lights all;
   for (const LightEstimates* some : {&lights, &others}) {
     for (const LightEstimate& estimate : *some) all.emplace_back(point_light(estimate));
@@ -47,13 +54,23 @@ Column light_beside(const ManyReceivers& many, const LightEstimates& lights, con
   const std::size_t paths = kPathsPerSample * std::size_t(many.settings.samples) / at.size();
   const renderer::TraceOptions trace{std::clamp(int(paths), kLeastPaths, kMostPaths), many.settings.bounces,
                                      many.settings.seed, false};
-  const std::vector<Vec3f> traced = trace_illumination(many.tracer, at, all, trace, many.control).value;
-  Column beside(Eigen::Index(at.size()), 3);
-  for (std::size_t i = 0; i < at.size(); ++i) beside.row(Eigen::Index(i)) = to_eigen(traced[i]).transpose();
-  for (const LightEstimate& light : lights) {
-    beside -= many.response.direct(light.position) * light.intensity.matrix().asDiagonal();
+  const auto traced = trace_illumination_per_light(many.tracer, at, all, trace, many.control);
+  const auto column = [&](std::size_t l) {
+    Column values(Eigen::Index(at.size()), 3);
+    for (std::size_t i = 0; i < at.size(); ++i) values.row(Eigen::Index(i)) = to_eigen(traced[l][i]).transpose();
+    return values;
+  };
+  TracedIndirect indirect{{}, Column::Zero(Eigen::Index(at.size()), 3)};
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    // Of a channel that does not shine nothing is known, and its indirect light counts as none.
+    const auto shines = (lights[j].intensity > kDarkest).eval();
+    const Eigen::Array3d per_candela = shines.select(lights[j].intensity.inverse(), 0);
+    const Column unity = column(j) * per_candela.matrix().asDiagonal();
+    indirect.unity.push_back(unity -
+                             many.response.direct(lights[j].position) * shines.cast<double>().matrix().asDiagonal());
   }
-  return beside;
+  for (std::size_t l = lights.size(); l < all.size(); ++l) indirect.others += column(l);
+  return indirect;
 }
 
 double median(Eigen::VectorXd values) {
@@ -62,11 +79,11 @@ double median(Eigen::VectorXd values) {
   return *middle;
 }
 
-Column residual_of(const Observations& observations, const std::vector<ColumnWithGradient>& columns,
-                   const LightEstimates& lights) {
+Column residual_of(const Observations& observations, const std::vector<ColumnWithGradient>& direct,
+                   const std::vector<Column>& indirect, const LightEstimates& lights) {
   Column residual = -observations.wanted;
   for (std::size_t j = 0; j < lights.size(); ++j) {
-    residual += columns[j].value * lights[j].intensity.matrix().asDiagonal();
+    residual += (direct[j].value + indirect[j]) * lights[j].intensity.matrix().asDiagonal();
   }
   return residual;
 }
@@ -79,33 +96,37 @@ Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Colum
   return observations.sqrt_weight.array() / (1 + (relative / scale).square());
 }
 
-// Unknowns: x, y, z of each light, then red, green, blue of each.
-Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights,
-                                  const Column& residual, const Eigen::VectorXd& sqrt_weight) {
+// Unknowns: x, y, z of each light, then red, green, blue of each. Instruments are the derivatives of direct light.
+Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct, const std::vector<Column>& indirect,
+                                  const LightEstimates& lights, const Column& residual,
+                                  const Eigen::VectorXd& sqrt_weight) {
   const auto n = Eigen::Index(lights.size());
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6 * n);
   for (int c = 0; c < 3; ++c) {
-    Eigen::MatrixXd jacobian(residual.rows(), 4 * n);
+    Eigen::MatrixXd instruments(residual.rows(), 4 * n);
+    Eigen::MatrixXd by_bounces(residual.rows(), n);
     std::vector<Eigen::Index> unknown(std::size_t(4 * n));
     for (Eigen::Index j = 0; j < n; ++j) {
-      const ColumnWithGradient& column = columns[std::size_t(j)];
+      const ColumnWithGradient& column = direct[std::size_t(j)];
       for (int a = 0; a < 3; ++a) {
-        jacobian.col(3 * j + a) =
+        instruments.col(3 * j + a) =
             lights[std::size_t(j)].intensity[c] * sqrt_weight.cwiseProduct(column.gradient[a].col(c));
         unknown[std::size_t(3 * j + a)] = 3 * j + a;
       }
-      jacobian.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(c));
+      instruments.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(c));
+      by_bounces.col(j) = sqrt_weight.cwiseProduct(indirect[std::size_t(j)].col(c));
       unknown[std::size_t(3 * n + j)] = 3 * n + 3 * j + c;
     }
-    const Eigen::VectorXd weighted = sqrt_weight.cwiseProduct(residual.col(c));
-    normal(unknown, unknown) += jacobian.transpose() * jacobian;
-    gradient(unknown) += jacobian.transpose() * weighted;
+    Eigen::MatrixXd products = instruments.transpose() * instruments;
+    products.rightCols(n) += instruments.transpose() * by_bounces;
+    normal(unknown, unknown) += products;
+    gradient(unknown) += instruments.transpose() * sqrt_weight.cwiseProduct(residual.col(c));
   }
   normal.diagonal() *= 1 + kDamping;
   // A light that has no effect has no row.
   for (Eigen::Index k = 0; k < 6 * n; ++k) normal(k, k) += normal(k, k) > 0 ? 0 : 1;
-  return -normal.ldlt().solve(gradient);
+  return -normal.partialPivLu().solve(gradient);
 }
 
 // As far as the step goes, within the region and the longest step; true: it moved.
@@ -127,14 +148,75 @@ bool take(const Eigen::VectorXd& step, const Box3f& region, LightEstimates& ligh
   return longest > kStepAtRest * diagonal;
 }
 
-void descend(const LightResponse& response, const Observations& observations, LightEstimates& lights) {
+void descend(const LightResponse& response, const Observations& observations, const std::vector<Column>& indirect,
+             LightEstimates& lights) {
   for (int k = 0; k < kSteps; ++k) {
-    const std::vector<ColumnWithGradient> columns = columns_of(response, lights);
-    const Column residual = residual_of(observations, columns, lights);
-    const Eigen::VectorXd step =
-        gauss_newton_step(columns, lights, residual, robust_sqrt_weight(observations, residual, kOutlier));
+    const std::vector<ColumnWithGradient> direct = columns_of(response, lights);
+    const Column residual = residual_of(observations, direct, indirect, lights);
+    const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kOutlier);
+    const Eigen::VectorXd step = gauss_newton_step(direct, indirect, lights, residual, weight);
     if (!step.allFinite() || !take(step, response.grid().region, lights)) return;
   }
+}
+
+// A light whose indirect light stayed behind while it moved is led past its place in one round and back in the next.
+// The ratio of both moves tells where it would come to rest (Aitken's Δ²).
+void come_to_rest(const LightEstimates& before, const std::vector<Eigen::Vector3d>& last_move, LightEstimates& lights) {
+  for (std::size_t j = 0; j < last_move.size(); ++j) {
+    const Eigen::Vector3d move = lights[j].position - before[j].position;
+    const double ratio = move.dot(last_move[j]) / std::max(last_move[j].squaredNorm(), 1e-300);
+    if (ratio < 0 && ratio > -1) lights[j].position = before[j].position + move / (1 - ratio);
+  }
+}
+
+std::vector<Eigen::Vector3d> moves(const LightEstimates& before, const LightEstimates& lights) {
+  std::vector<Eigen::Vector3d> moved;
+  for (std::size_t j = 0; j < lights.size(); ++j) moved.emplace_back(lights[j].position - before[j].position);
+  return moved;
+}
+
+// Intensities of one channel, none negative: those that would be are held at zero.
+Eigen::VectorXd solve_with_instruments(const Eigen::MatrixXd& normal, const Eigen::VectorXd& wanted) {
+  std::vector<Eigen::Index> lit;
+  for (Eigen::Index j = 0; j < normal.rows(); ++j) {
+    if (normal(j, j) > 0) lit.push_back(j);
+  }
+  Eigen::VectorXd intensity = Eigen::VectorXd::Zero(normal.rows());
+  while (!lit.empty()) {
+    const Eigen::VectorXd solution = normal(lit, lit).partialPivLu().solve(Eigen::VectorXd(wanted(lit)));
+    if (solution.allFinite() && solution.minCoeff() >= 0) {
+      intensity(lit) = solution;
+      break;
+    }
+    Eigen::Index darkest = 0;
+    if (solution.allFinite()) solution.minCoeff(&darkest);
+    lit.erase(lit.begin() + darkest);
+  }
+  return intensity;
+}
+
+// With weights that residuals cannot take the mean off by: noise is not symmetric, and none but fireflies lose weight.
+// Returns the relative error left.
+double fit_brightness(const ManyReceivers& many, const Observations& observations, const std::vector<Column>& indirect,
+                      LightEstimates& lights) {
+  const std::vector<Column> direct = evaluate_columns(many.response, lights, VisibilitySource::kTraced);
+  std::vector<Column> all = direct;
+  for (std::size_t j = 0; j < lights.size(); ++j) all[j] += indirect[j];
+  const Eigen::Index receivers = observations.wanted.rows(), n = Eigen::Index(lights.size());
+  const Column left = total_illumination(all, lights, receivers) - observations.wanted;
+  const Eigen::VectorXd weight = robust_sqrt_weight(observations, left, kFirefly).cwiseAbs2();
+  for (int c = 0; c < 3; ++c) {
+    Eigen::MatrixXd normal(n, n);
+    Eigen::VectorXd wanted(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Eigen::VectorXd instrument = weight.cwiseProduct(direct[std::size_t(j)].col(c));
+      for (Eigen::Index k = 0; k < n; ++k) normal(j, k) = instrument.dot(all[std::size_t(k)].col(c));
+      wanted[j] = instrument.dot(observations.wanted.col(c));
+    }
+    const Eigen::VectorXd intensity = solve_with_instruments(normal, wanted);
+    for (Eigen::Index j = 0; j < n; ++j) lights[std::size_t(j)].intensity[c] = intensity[j];
+  }
+  return relative_error(observations, total_illumination(all, lights, receivers));
 }
 
 }  // namespace
@@ -156,21 +238,17 @@ PolishedLights refine_over_many(const ManyReceivers& many, const LightEstimates&
   for (const LightEstimate& light : start) refined.lights.push_back({light.position, light.intensity});
   if (start.empty() || many.response.receiver_count() == 0) return refined;
   double move = std::numeric_limits<double>::infinity();
+  std::vector<Eigen::Vector3d> last_move;
   while (move > kAtRest * double(many.response.grid().region.diagonal()) && refined.rounds < kRounds) {
     const LightEstimates before = refined.lights;
     Observations observations = many.observations;
-    observations.wanted -= light_beside(many, refined.lights, others);
-    descend(many.response, observations, refined.lights);
-    // Noise is not symmetric, and weights by residuals take its mean off: none but fireflies lose weight here.
-    const std::vector<Column> columns = evaluate_columns(many.response, refined.lights, VisibilitySource::kTraced);
-    Observations fitted = observations;
-    const Column left = total_illumination(columns, refined.lights, observations.wanted.rows()) - observations.wanted;
-    fitted.sqrt_weight = robust_sqrt_weight(observations, left, kFirefly);
-    const IntensityFit fit = fit_intensities(fitted, columns);
-    for (std::size_t j = 0; j < before.size(); ++j) refined.lights[j].intensity = fit.intensity[j];
-    refined.error =
-        relative_error(observations, total_illumination(columns, refined.lights, observations.wanted.rows()));
+    const TracedIndirect indirect = trace_indirect(many, refined.lights, others);
+    observations.wanted -= indirect.others;
+    descend(many.response, observations, indirect.unity, refined.lights);
+    come_to_rest(before, last_move, refined.lights);
+    refined.error = fit_brightness(many, observations, indirect.unity, refined.lights);
     move = largest_move(refined.lights, before);
+    last_move = moves(before, refined.lights);
     ++refined.rounds;
   }
   return refined;

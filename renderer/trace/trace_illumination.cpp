@@ -14,61 +14,113 @@ constexpr int kBatches = 4;
 // Each punctual light is asked once per point, and not one per path, where they are no more than so many per path.
 constexpr std::size_t kLightsPerPath = 4;
 
+// How the illumination of each of many points is sampled.
+struct Sampling {
+  Sampling(const RayTracer& tracer, const Lights& lights, const TraceOptions& options_)
+      : paths(tracer, lights, options_),
+        options(options_),
+        with_punctual(has_blended_surfaces(tracer.scene()) ||
+                      lights.size() > std::max(LightSelection::kFew, kLightsPerPath * std::size_t(options.samples))),
+        noisy(options.bounces != 0 || with_punctual || paths.has_emission()),
+        batches(std::min(kBatches, options.samples)) {}
+
+  int samples_of(int batch) const { return options.samples / batches + (batch < options.samples % batches ? 1 : 0); }
+
+  PathTracer paths;
+  TraceOptions options;
+  bool with_punctual;  // of direct light by the paths, and not apart from them
+  bool noisy;          // there is light that takes paths
+  int batches;
+};
+
 struct Estimate {
   Vec3f value, standard_error;
 };
 
-Vec3f batch_mean(const PathTracer& paths, const SurfaceSample& at, bool with_punctual, std::uint64_t seed,
-                 std::uint32_t stream, int samples) {
-  PathLight light;
-  for (int i = 0; i < samples; ++i) {
-    Sampler sampler(seed, stream, std::uint32_t(i));
-    paths.add_illumination(at.position, at.normal, with_punctual, sampler, light);
-  }
-  return (light.direct + light.indirect) / float(samples);
+void add_exact(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream, PathLight& light) {
+  Sampler sampler(sampling.options.seed, stream, 0);
+  if (!sampling.with_punctual) sampling.paths.add_punctual_illumination(at.position, at.normal, sampler, light);
 }
 
-Estimate estimate(const PathTracer& paths, const SurfaceSample& at, const TraceOptions& options, bool with_punctual,
-                  std::uint32_t stream) {
-  PathLight punctual;
-  Sampler sampler(options.seed, stream, 0);
-  if (!with_punctual) paths.add_punctual_illumination(at.position, at.normal, sampler, punctual);
-  const bool noisy = options.bounces != 0 || with_punctual || paths.has_emission();
-  if (!noisy) return {punctual.direct, {}};
+void add_batch(const Sampling& sampling, const SurfaceSample& at, int batch, std::uint32_t stream, PathLight& light) {
+  const std::uint64_t seed = seed_of_batch(sampling.options.seed, std::uint64_t(batch) + 1);
+  for (int i = 0; i < sampling.samples_of(batch); ++i) {
+    Sampler sampler(seed, stream, std::uint32_t(i));
+    sampling.paths.add_illumination(at.position, at.normal, sampling.with_punctual, sampler, light);
+  }
+}
 
-  const int batches = std::min(kBatches, options.samples);
+Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream) {
+  PathLight exact;
+  add_exact(sampling, at, stream, exact);
+  if (!sampling.noisy) return {exact.direct, {}};
+
+  const int batches = sampling.batches;
   std::array<Vec3f, kBatches> means;
   Vec3f mean;
   for (int b = 0; b < batches; ++b) {
-    const int count = options.samples / batches + (b < options.samples % batches ? 1 : 0);
-    const std::uint64_t seed = seed_of_batch(options.seed, std::uint64_t(b) + 1);
-    means[b] = batch_mean(paths, at, with_punctual, seed, stream, count);
+    PathLight light;
+    add_batch(sampling, at, b, stream, light);
+    means[b] = (light.direct + light.indirect) / float(sampling.samples_of(b));
     mean += means[b] / float(batches);
   }
   Vec3f variance;
   for (int b = 0; b < batches; ++b) variance += (means[b] - mean) * (means[b] - mean);
   if (batches > 1) variance = variance / float(batches * (batches - 1));
-  return {punctual.direct + mean, {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)}};
+  return {exact.direct + mean, {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)}};
+}
+
+std::vector<Vec3f> estimate_per_light(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream) {
+  const std::size_t sources = sampling.paths.emission_source() + 1;
+  PathLight exact, mean;
+  exact.per_light.resize(sources);
+  mean.per_light.resize(sources);
+  add_exact(sampling, at, stream, exact);
+  for (int b = 0; sampling.noisy && b < sampling.batches; ++b) {
+    PathLight light;
+    light.per_light.resize(sources);
+    add_batch(sampling, at, b, stream, light);
+    for (std::size_t l = 0; l < sources; ++l) {
+      mean.per_light[l] += light.per_light[l] / float(sampling.batches * sampling.samples_of(b));
+    }
+  }
+  for (std::size_t l = 0; l < sources; ++l) exact.per_light[l] += mean.per_light[l];
+  return exact.per_light;
+}
+
+template <class Function>
+void for_each_point(std::size_t points, const Control& control, const Function& function) {
+  constexpr std::size_t kBlock = 64;
+  parallel_for((points + kBlock - 1) / kBlock, "illumination", control, [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(points, (block + 1) * kBlock); ++i) function(i);
+  });
 }
 
 }  // namespace
 
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control) {
-  const PathTracer paths(tracer, lights, options);
-  const bool with_punctual =
-      has_blended_surfaces(tracer.scene()) ||
-      lights.size() > std::max(LightSelection::kFew, kLightsPerPath * std::size_t(options.samples));
+  const Sampling sampling(tracer, lights, options);
   Illumination result;
   result.value.resize(points.size());
   result.standard_error.resize(points.size());
-  constexpr std::size_t kBlock = 64;
-  parallel_for((points.size() + kBlock - 1) / kBlock, "illumination", control, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i) {
-      const Estimate e = estimate(paths, points[i], options, with_punctual, std::uint32_t(i));
-      result.value[i] = e.value;
-      result.standard_error[i] = e.standard_error;
-    }
+  for_each_point(points.size(), control, [&](std::size_t i) {
+    const Estimate e = estimate(sampling, points[i], std::uint32_t(i));
+    result.value[i] = e.value;
+    result.standard_error[i] = e.standard_error;
+  });
+  return result;
+}
+
+std::vector<std::vector<Vec3f>> trace_illumination_per_light(const RayTracer& tracer,
+                                                             std::span<const SurfaceSample> points,
+                                                             const Lights& lights, const TraceOptions& options,
+                                                             const Control& control) {
+  const Sampling sampling(tracer, lights, options);
+  std::vector<std::vector<Vec3f>> result(lights.size(), std::vector<Vec3f>(points.size()));
+  for_each_point(points.size(), control, [&](std::size_t i) {
+    const std::vector<Vec3f> per_light = estimate_per_light(sampling, points[i], std::uint32_t(i));
+    for (std::size_t l = 0; l < lights.size(); ++l) result[l][i] = per_light[l];
   });
   return result;
 }

@@ -35,10 +35,11 @@ inline LightEstimates known_lights(std::size_t count) {
   return {all.begin(), all.begin() + std::ptrdiff_t(count)};
 }
 
-// corner_with_ball, its receivers, and what lights of one's choice show on them.
+// corner_with_ball or another scene, its receivers, and what lights of one's choice show on them.
 class PaintedCorner {
  public:
-  explicit PaintedCorner(float max_edge = 0.2F) : receivers_(make_receivers(scene_, {.max_edge = max_edge})) {}
+  explicit PaintedCorner(float max_edge = 0.2F, renderer::Scene scene = test::corner_with_ball())
+      : scene_(std::move(scene)), receivers_(make_receivers(scene_, {.max_edge = max_edge})) {}
 
   Target target(const LightEstimates& lights, int bounces) const {
     const auto lit = trace_illumination(tracer_, receivers_.samples, point_lights(lights),
@@ -54,7 +55,7 @@ class PaintedCorner {
   double diagonal() const { return double(tracer_.bounds().diagonal()); }
 
  private:
-  renderer::Scene scene_ = test::corner_with_ball();
+  renderer::Scene scene_;
   renderer::RayTracer tracer_{scene_};
   Receivers receivers_;
 };

@@ -27,6 +27,8 @@ LightEstimates displaced(LightEstimates lights, double metres, double brighter) 
 
 class RefineOverMany : public ::testing::Test {
  protected:
+  explicit RefineOverMany(renderer::Scene scene = test::corner_with_ball()) : corner_(0.2F, std::move(scene)) {}
+
   LightEstimates refine(const LightEstimates& known, int bounces, const LightEstimates& start,
                         const LightEstimates& others = {}) const {
     const Target target = corner_.target(known, bounces);
@@ -65,6 +67,23 @@ TEST_F(RefineOverMany, LeavesOthersAlone) {
   const LightEstimates known = known_lights(2);
   const LightEstimates one{known[0]}, other{known[1]};
   expect_near(refine(known, -1, displaced(one, 0.05, 0.1), other), one, 0.005, 0.01);
+}
+
+// A closed room of white walls, where three quarters of the light have been reflected before.
+class RefineOverManyInAWhiteRoom : public RefineOverMany {
+ protected:
+  RefineOverManyInAWhiteRoom() : RefineOverMany(white_room()) {}
+
+  static renderer::Scene white_room() {
+    renderer::Scene scene;
+    test::add_mesh(scene, test::room({4, 3, 4}), test::lambert({0.75F, 0.75F, 0.75F}), "room");
+    return scene;
+  }
+};
+
+TEST_F(RefineOverManyInAWhiteRoom, FollowsLightByBouncesWithTheIntensities) {
+  const LightEstimates known = known_lights(1);
+  expect_near(refine(known, -1, displaced(known, 0.05, 0.3)), known, 0.005, 0.01);
 }
 
 TEST_F(RefineOverMany, OfNoLightsIsNone) { EXPECT_TRUE(refine(known_lights(1), 0, {}).empty()); }

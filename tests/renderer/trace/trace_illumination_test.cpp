@@ -45,6 +45,26 @@ TEST(TraceIllumination, SpotAndDirectionalLightsFollowTheirDefinitions) {
   EXPECT_NEAR(by_sun.value[0].x, 100 * std::sqrt(0.5F) / kPi, 1e-4);
 }
 
+TEST(TraceIllumination, PerLightIsTheSameTakenApart) {
+  Scene scene;
+  add_mesh(scene, test::room({4, 3, 4}), lambert({0.5F, 0.6F, 0.7F}), "room");
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {1, 2, 1}, {10, 0, 0}}, PointLight{"", {3, 1, 2}, {0, 20, 5}}};
+  const std::vector<SurfaceSample> points{{{2, 0.001F, 2}, {0, 1, 0}}, {{0.001F, 1, 3}, {1, 0, 0}}};
+  for (const int bounces : {0, 3}) {
+    const TraceOptions options{.samples = 30, .bounces = bounces, .seed = 5};
+    const auto whole = trace_illumination(tracer, points, lights, options);
+    const auto parts = trace_illumination_per_light(tracer, points, lights, options);
+    ASSERT_EQ(parts.size(), 2U);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_GT(parts[0][i].x, 0);
+      EXPECT_NEAR(parts[0][i].x, whole.value[i].x, 1e-5F * whole.value[i].x);
+      EXPECT_EQ(parts[0][i].y, 0);
+      EXPECT_NEAR(parts[1][i].z, whole.value[i].z, 1e-5F * whole.value[i].z);
+    }
+  }
+}
+
 TEST(TraceIllumination, FurnaceGivesEmissionOverOneMinusAlbedo) {
   // Inside a closed surface of emission e and albedo a, radiance and illumination are e / (1 - a) everywhere.
   for (const float albedo : {0.0F, 0.5F, 0.8F}) {
