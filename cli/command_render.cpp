@@ -40,7 +40,7 @@ void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, 
 void save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
   const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common);
   save_frame(frame, camera, options.output, origin, options.frame);
-  if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame.view);
+  if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame);
 }
 
 std::string text_of_samples(const renderer::Frame& frame) {

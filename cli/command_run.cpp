@@ -72,7 +72,7 @@ JsonObject render_camera(const RunCommand& options, const LoadedStage& stage, co
   warn_of_frame(frame, camera.name, session);
   const FrameOrigin origin = frame_origin(options.scene, transport, options.common);
   save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
-  save_preview(frame.image, beside(file, ".png"), options.frame.view);
+  save_preview(frame.image, beside(file, ".png"), options.frame);
   return frame_summary(frame, camera.name);
 }
 

@@ -72,6 +72,10 @@ void add_attributes(renderer::Attributes& attributes, const renderer::Frame& fra
   if (frame.interrupted) attributes.emplace_back("chiaro:interrupted", 1);
   if (options.lens.f_number) attributes.emplace_back("aperture", *options.lens.f_number);
   if (frame.lens.radius > 0) attributes.emplace_back("focus", frame.lens.focus_distance);
+  if (options.lens.shutter) {
+    attributes.emplace_back("expTime", *options.lens.shutter);
+    attributes.emplace_back("isoSpeed", options.lens.iso);
+  }
 }
 
 }  // namespace
@@ -102,6 +106,9 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
 }
 
 void require_color_choices(const FrameOptions& options, bool preview) {
+  if (options.view.auto_exposure && options.lens.shutter) {
+    throw UsageError("--exposure auto: --shutter exposes display pictures too (expected one of them)");
+  }
   if (preview) require_view(options.view);
   if (options.output_space.empty()) return;
   Image pixel = renderer::make_image(1, 1, {"R", "G", "B"});
@@ -166,7 +173,9 @@ void warn_of_frame(const renderer::Frame& frame, const std::string& name, Sessio
   session.warn(fmt::format("{}: {} samples were not finite and are left black", name, frame.dropped_samples));
 }
 
-void save_preview(const Image& frame, const std::filesystem::path& path, const ViewChoice& view) {
+void save_preview(const Image& frame, const std::filesystem::path& path, const FrameOptions& options) {
+  ViewChoice view = options.view;
+  view.view.exposure += camera_exposure(options.lens);
   renderer::save_image(displayed(frame, view), path, renderer::PixelType::kUint8);
 }
 

@@ -38,7 +38,8 @@ struct FrameRun {
 
 void add_frame_options(CLI::App& command, FrameOptions& options);
 
-// Error where the colour spaces, displays or views asked for do not exist.
+// Error where the colour spaces, displays or views asked for do not exist. UsageError where two options expose the
+// preview.
 void require_color_choices(const FrameOptions& options, bool preview);
 
 // The frame as the options want it.
@@ -55,7 +56,7 @@ void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, co
                 const FrameOrigin& origin, const FrameOptions& options);
 
 // Writes the frame's colours as the view shows them (8 bits).
-void save_preview(const renderer::Image& frame, const std::filesystem::path& path, const ViewChoice& view);
+void save_preview(const renderer::Image& frame, const std::filesystem::path& path, const FrameOptions& options);
 
 // The layers of a frame that are colours ("" = the beauty), as convert_from_rec709 wants them.
 std::vector<std::string> color_layers(const renderer::Image& frame);

@@ -28,6 +28,13 @@ float distance_in_the_middle(const renderer::Camera& camera, const renderer::Ray
 
 }  // namespace
 
+float camera_exposure(const LensOptions& options) {
+  if (!options.f_number || !options.shutter) return 0;
+  constexpr float kSaturation = 78 / 0.65F;
+  const float brightest = kSaturation * *options.f_number * *options.f_number / (*options.shutter * options.iso);
+  return -std::log2(brightest);
+}
+
 void add_lens_options(CLI::App& command, LensOptions& options) {
   CLI::Option* f_number =
       add_number(command, {"--f-number", "N", "Depth of field of a lens of this f-number (default: all is sharp)"},
@@ -43,6 +50,11 @@ void add_lens_options(CLI::App& command, LensOptions& options) {
       options.sensor_height);
   add_count(command, {"--blades", "N", "Blades of the aperture (default: round)"}, options.blades, kBlades)
       ->needs(f_number);
+  CLI::Option* shutter =
+      add_number(command, {"--shutter", "SECONDS", "Expose display pictures as a camera does; --exposure adds to it"},
+                 options.shutter, kPositive)
+          ->needs(f_number);
+  add_number(command, {"--iso", "N", "Speed of the film (default 100)"}, options.iso, kPositive)->needs(shutter);
 }
 
 renderer::Lens lens_of(const LensOptions& options, const renderer::Camera& camera, const renderer::RayTracer& tracer) {

@@ -79,14 +79,20 @@ TEST(CliRender, MattesHaveTheirManifest) {
 
 TEST(CliRender, LensesAreWrittenIntoTheHeaderAndNeedAnFNumber) {
   const TemporaryFolder folder;
-  ASSERT_EQ(render_preview(folder, {"--f-number", "2", "--focus-distance", "3.5"}).exit_code, kDone);
+  const std::vector<std::string> camera{"--f-number", "2",  "--focus-distance", "3.5", "--shutter", "0.02",
+                                        "--iso",      "400"};
+  ASSERT_EQ(render_preview(folder, camera).exit_code, kDone);
   const renderer::Attributes attributes = renderer::load_image_header(folder / "frame.exr").attributes;
-  for (const auto& [name, expected] : {std::pair{"aperture", 2.0F}, {"focus", 3.5F}}) {
+  for (const auto& [name, expected] :
+       {std::pair{"aperture", 2.0F}, {"focus", 3.5F}, {"expTime", 0.02F}, {"isoSpeed", 400.0F}}) {
     bool found = false;
     for (const auto& [key, value] : attributes) found = found || (key == name && std::get<float>(value) == expected);
     EXPECT_TRUE(found) << name;
   }
   EXPECT_EQ(render_preview(folder, {"--focus-distance", "3.5"}).exit_code, kWrongUsage);
+  EXPECT_EQ(render_preview(folder, {"--shutter", "0.1"}).exit_code, kWrongUsage);
+  EXPECT_EQ(render_preview(folder, {"--f-number", "2", "--shutter", "0.1", "--exposure", "auto"}).exit_code,
+            kWrongUsage);
 }
 
 std::string grey_frame(const TemporaryFolder& folder, const std::string& name, float grey) {

@@ -129,6 +129,14 @@ TEST(CliFrameOutput, OnlyColoursAreConverted) {
   EXPECT_EQ(color_layers(image), (std::vector<std::string>{"", "albedo", "light.lamp"}));
 }
 
+// Sunny 16: f/16 at 1/ISO seconds is the exposure of a sunlit scene, whose brightest matt surfaces show 30 000 cd/m².
+TEST(CliCameraExposure, ShowsWhatSaturatesTheFilmAsOne) {
+  const LensOptions sunny{.f_number = 16, .focus_distance = {}, .focal_length = {}, .shutter = 0.01F, .iso = 100};
+  EXPECT_NEAR(camera_exposure(sunny), -std::log2(120.0F * 16 * 16 / (0.01F * 100)), 1e-4);
+  EXPECT_NEAR(30000 * std::exp2(camera_exposure(sunny)), 1, 0.05);
+  EXPECT_EQ(camera_exposure({.f_number = 16, .focus_distance = {}, .focal_length = {}, .shutter = {}}), 0);
+}
+
 TEST(CliAutoExposure, BringsTheLogAverageToMiddleGrey) {
   renderer::Image image = renderer::make_image(2, 2, {"R", "G", "B"});
   const float nan = std::nanf("");
