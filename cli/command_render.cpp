@@ -103,6 +103,7 @@ CommandRun add_render(CLI::App& command) {
              options->frame.time_limit, kPositive);
   add_flag(command, "--preview", options->preview, "Write F.png beside the frame, through OpenColorIO");
   add_frame_options(command, options->frame);
+  add_hide_backs(command, options->transport.materials);
   add_transport_options(command, options->transport, "Paths per pixel");
   add_common_options(command, options->common);
   set_examples(command,

@@ -151,6 +151,7 @@ CommandRun add_run(CLI::App& command) {
   add_count(command, {"--frame-samples", "N", fmt::format("Paths per pixel (default {})", options->frame_samples)},
             options->frame_samples, {1, 1 << 24});
   add_frame_options(command, options->frame);
+  add_hide_backs(command, options->choices.transport.materials);
   add_common_options(command, options->common);
   set_examples(command, "  chiaro run room.glb --target painted.glb -o room_lit --max-lights 5 --width 1280");
   return [options] { return run_run(*options); };

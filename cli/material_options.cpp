@@ -25,8 +25,14 @@ void add_material_options(CLI::App& command, MaterialOptions& options) {
              [&options](const std::string& text) { options.albedo = parse_albedo(text); });
 }
 
+void add_hide_backs(CLI::App& command, MaterialOptions& options) {
+  add_flag(command, "--hide-backs", options.hide_backs,
+           "Cameras see through the backs of single-sided surfaces, as viewers of glTF do; light does not");
+}
+
 renderer::MaterialOverride material_override(const MaterialOptions& options) {
-  return {options.diffuse ? renderer::MaterialModel::kDiffuse : renderer::MaterialModel::kGltf, options.albedo};
+  return {options.diffuse ? renderer::MaterialModel::kDiffuse : renderer::MaterialModel::kGltf, options.albedo,
+          options.hide_backs};
 }
 
 std::string text_of_materials(const MaterialOptions& options) {

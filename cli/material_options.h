@@ -11,13 +11,17 @@ class App;
 
 namespace chiaro::cli {
 
-// --materials and --albedo.
+// --materials and --albedo, and --hide-backs.
 struct MaterialOptions {
   bool diffuse = false;
   std::optional<renderer::Vec3f> albedo;
+  bool hide_backs = false;
 };
 
 void add_material_options(CLI::App& command, MaterialOptions& options);
+
+// --hide-backs, of commands that make frames.
+void add_hide_backs(CLI::App& command, MaterialOptions& options);
 
 renderer::MaterialOverride material_override(const MaterialOptions& options);
 

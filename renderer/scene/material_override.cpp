@@ -16,6 +16,8 @@ void make_diffuse(Material& material) {
   material.layers.reset();
 }
 
+bool transmits(const Material& material) { return material.layers && material.layers->transmission > 0; }
+
 // Alpha needs the base colour's texture, so a constant albedo keeps the texture only where alpha is used.
 void set_albedo(Material& material, Vec3f albedo) {
   material.base_color = albedo;
@@ -25,6 +27,9 @@ void set_albedo(Material& material, Vec3f albedo) {
 }  // namespace
 
 Scene with_materials(Scene scene, const MaterialOverride& materials) {
+  for (Material& material : scene.materials) {
+    material.hidden_back = materials.hide_backs && !material.double_sided && !transmits(material);
+  }
   if (materials.model == MaterialModel::kGltf && !materials.albedo) return scene;
   for (Material& material : scene.materials) {
     make_diffuse(material);

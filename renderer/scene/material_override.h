@@ -14,6 +14,7 @@ enum class MaterialModel : std::uint8_t {
 struct MaterialOverride {
   MaterialModel model = MaterialModel::kGltf;
   std::optional<Vec3f> albedo;  // every surface a Lambert of this; alpha kept, no emission
+  bool hide_backs = false;      // of single-sided surfaces that do not transmit, from cameras, as viewers do
 };
 
 // The scene with its materials replaced, as lighting artists' clay renders do. Where they are, frames compare with

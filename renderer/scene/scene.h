@@ -32,7 +32,8 @@ struct Material {
   TextureUse emission_texture;  // sRGB
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5F;
-  bool double_sided = false;
+  bool double_sided = false;             // light and cameras see both sides of every surface, unless hidden_back
+  bool hidden_back = false;              // cameras see through it from the back
   bool lambert = false;                  // Lambert of the base colour instead of metallic-roughness
   bool geometric_horizon = false;        // no light from below a triangle's horizon, whatever the vertex normals see
   bool constant_base_color = false;      // neither texture nor vertex colour changes the base colour; alpha still does

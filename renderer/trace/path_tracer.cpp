@@ -271,7 +271,7 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
     Ray ray{scattered.origin, scattered.direction, 0, kInfinity, path.sampler.next_bits()};
     ray.cone_spread = scattered_cone(scattered.pdf);
     ray.cone_width = ray.cone_spread * scattered.travelled;
-    ray.sees_unlit = scattered.from_camera();
+    ray.of_camera = scattered.from_camera();
     const auto hit = tracer_.intersect(ray);
     if (!hit) return add_missed(scattered, index, throughput, path);
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);

@@ -13,13 +13,14 @@ struct RayContext {
   RTCIntersectContext embree;  // first: Embree hands this address to the filter
   std::uint32_t alpha_seed;
   ClearSurfaces clear;
-  bool sees_unlit;
+  bool of_camera;
   bool passed_clear = false;
 };
 
 struct GeometryUser {
   const Scene* scene;
   const Mesh* mesh;
+  bool mirrored = false;  // its triangles are traced with the other side in front
 };
 
 // A hit that may be one, as a filter is shown it.
@@ -30,6 +31,7 @@ struct Candidate {
   const Material& material;
   std::uint32_t triangle;
   float u, v;
+  bool mirrored;
 };
 
 Candidate candidate(const RTCFilterFunctionNArguments& arguments) {
@@ -41,7 +43,8 @@ Candidate candidate(const RTCFilterFunctionNArguments& arguments) {
           user.scene->materials[user.mesh->material],
           RTCHitN_primID(hit, 1, 0),
           RTCHitN_u(hit, 1, 0),
-          RTCHitN_v(hit, 1, 0)};
+          RTCHitN_v(hit, 1, 0),
+          user.mirrored};
 }
 
 const RayContext& context_of(const Candidate& c) { return *reinterpret_cast<const RayContext*>(c.arguments.context); }
@@ -53,13 +56,13 @@ std::uint32_t seed_of(const Candidate& c) {
   return hash_combine(hash_combine(context_of(c).alpha_seed, c.triangle), surface);
 }
 
-// Between the ray and the triangle's normal, either side.
+// Between the ray's direction and the triangle's normal.
 float cosine_of(const Candidate& c) {
   RTCHitN* hit = c.arguments.hit;
   RTCRayN* ray = c.arguments.ray;
   const Vec3f normal{RTCHitN_Ng_x(hit, 1, 0), RTCHitN_Ng_y(hit, 1, 0), RTCHitN_Ng_z(hit, 1, 0)};
   const Vec3f direction{RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)};
-  return std::abs(dot(normal, direction)) / std::sqrt(length_squared(normal) * length_squared(direction));
+  return dot(normal, direction) / std::sqrt(length_squared(normal) * length_squared(direction));
 }
 
 // Alpha mask and blend: a hit that the alpha does not hold is passed through.
@@ -70,12 +73,16 @@ bool alpha_holds(const Candidate& c) {
   return alpha >= c.material.alpha_cutoff;
 }
 
+bool shows_hidden_back(const Candidate& c) {
+  return c.material.hidden_back && (c.mirrored ? cosine_of(c) < 0 : cosine_of(c) > 0);
+}
+
 bool passes_clear(const Candidate& c, ClearSurfaces clear) {
   if (clear == ClearSurfaces::kStop || !c.material.layers) return false;
   if (clear == ClearSurfaces::kPassThin && c.material.layers->solid) return false;
   if (!surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v)) return false;
   if (clear != ClearSurfaces::kPassByChance) return true;
-  const float through = clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, cosine_of(c));
+  const float through = clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, std::abs(cosine_of(c)));
   return unit_float(hash_combine(seed_of(c), 1)) < through;
 }
 
@@ -83,7 +90,7 @@ void filter_surface(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->valid[0] != -1) return;
   auto& context = *reinterpret_cast<RayContext*>(arguments->context);
   const Candidate c = candidate(*arguments);
-  if (!alpha_holds(c) || (c.material.unlit && !context.sees_unlit)) {
+  if (!alpha_holds(c) || (context.of_camera ? shows_hidden_back(c) : c.material.unlit)) {
     arguments->valid[0] = 0;
   } else if (passes_clear(c, context.clear)) {
     context.passed_clear = true;
@@ -93,7 +100,7 @@ void filter_surface(const RTCFilterFunctionNArguments* arguments) {
 
 bool needs_filter(const Material& material) {
   const bool transmits = material.layers && material.layers->transmission > 0;
-  return material.alpha_mode != AlphaMode::kOpaque || material.unlit || transmits;
+  return material.alpha_mode != AlphaMode::kOpaque || material.unlit || material.hidden_back || transmits;
 }
 
 std::vector<int> instances_per_mesh(const Scene& scene) {
@@ -117,7 +124,7 @@ RayContext make_context(const Ray& ray, bool coherent) {
   if (coherent) context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   context.alpha_seed = ray.alpha_seed;
   context.clear = ray.clear;
-  context.sees_unlit = ray.sees_unlit;
+  context.of_camera = ray.of_camera;
   return context;
 }
 
@@ -161,6 +168,7 @@ struct RayTracer::Embree {
     set_vertices(geometry, mesh, target_from_object);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                sizeof(Triangle), mesh.triangles.size());
+    users[user].mirrored = determinant3(target_from_object) < 0;
     rtcSetGeometryUserData(geometry, &users[user]);
     if (needs_filter(users[user].scene->materials[mesh.material])) {
       rtcSetGeometryIntersectFilterFunction(geometry, filter_surface);

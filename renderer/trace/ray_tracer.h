@@ -26,7 +26,7 @@ struct Ray {
   // with each metre. Zero: textures are looked up in full.
   float cone_width = 0, cone_spread = 0;
   ClearSurfaces clear = ClearSurfaces::kStop;
-  bool sees_unlit = false;  // of a camera; all others pass unlit surfaces
+  bool of_camera = false;  // sees unlit surfaces, which all others pass, and passes backs that are hidden
 };
 
 enum class Passage : std::uint8_t {

@@ -51,7 +51,7 @@ Ray camera_ray(const FrameTask& task, const SampleKey& key, Sampler& sampler) {
   const Vec2f lens = task.options.lens.radius > 0 ? sampler.next_2d() : Vec2f{0.5F, 0.5F};
   Ray ray = task.rays.at({float(key.x) + 0.5F + offset.x, float(key.y) + 0.5F + offset.y}, lens);
   ray.alpha_seed = sampler.next_bits();
-  ray.sees_unlit = true;
+  ray.of_camera = true;
   return ray;
 }
 

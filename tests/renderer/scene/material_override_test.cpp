@@ -20,6 +20,21 @@ TEST(MaterialOverride, DiffuseFiltersTexturesAsStoredAndEndsLightAtTheTrianglesH
   EXPECT_TRUE(diffuse.materials[0].geometric_horizon);
 }
 
+TEST(MaterialOverride, HidesBacksOfSingleSidedSurfacesThatDoNotTransmit) {
+  Scene scene;
+  scene.materials.resize(3);
+  scene.materials[1].double_sided = true;
+  scene.materials[2].layers.emplace();
+  scene.materials[2].layers->transmission = 1;
+  for (const MaterialModel model : {MaterialModel::kGltf, MaterialModel::kDiffuse}) {
+    const Scene hidden = with_materials(scene, {.model = model, .albedo = {}, .hide_backs = true});
+    EXPECT_TRUE(hidden.materials[0].hidden_back);
+    EXPECT_FALSE(hidden.materials[1].hidden_back);
+    EXPECT_FALSE(hidden.materials[2].hidden_back);
+  }
+  EXPECT_FALSE(with_materials(scene, {}).materials[0].hidden_back);
+}
+
 TEST(MaterialOverride, GeometricHorizonKeepsLightFromBelowTheTriangleOut) {
   // A triangle whose vertex normals lean by 45° towards a light that stands 10° below its plane.
   const auto seen = [](bool geometric_horizon) {

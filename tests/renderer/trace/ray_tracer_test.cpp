@@ -310,5 +310,35 @@ TEST(OffsetPoint, NoFalseShadowsInTheCornersOfARoom) {
   }
 }
 
+// The camera in each ball sees out of it, and into none; all other rays meet the inside.
+TEST(RayTracer, HiddenBacksAreHiddenFromCamerasAlone) {
+  Scene alone;
+  add_mesh(alone, test::sphere({0.1F, 0, 0}, 1, 8), lambert({0.5F, 0.5F, 0.5F}), "ball");
+  alone.instances[0].world_from_object = turned({0, 0, 0}, {1, -1, 1});
+  for (Scene scene : {instanced_scene(), flattened(instanced_scene()), alone}) {
+    for (Material& material : scene.materials) material.hidden_back = true;
+    const RayTracer tracer(scene);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+      const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+      Vec3f center;
+      for (const Vec3f& p : mesh.positions) center += p / float(mesh.positions.size());
+      center = transform_point(scene.instances[i].world_from_object, center);
+      Ray out{center, {0, 0, 1}};
+      const auto inside = tracer.intersect(out);
+      ASSERT_TRUE(inside);
+      EXPECT_EQ(inside->instance, i);
+      out.of_camera = true;
+      const auto beyond = tracer.intersect(out);
+      EXPECT_TRUE(!beyond || beyond->instance != i);
+      Ray in{center + 10 * inside->distance * out.direction, {0, 0, -1}};
+      const auto front = tracer.intersect(in);
+      in.of_camera = true;
+      const auto seen = tracer.intersect(in);
+      ASSERT_TRUE(front && seen);
+      EXPECT_EQ(front->distance, seen->distance);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::renderer
