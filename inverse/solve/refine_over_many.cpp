@@ -161,18 +161,14 @@ void descend(const LightResponse& response, const Observations& observations, co
 
 // A light whose indirect light stayed behind while it moved is led past its place in one round and back in the next.
 // The ratio of both moves tells where it would come to rest (Aitken's Δ²).
-void come_to_rest(const LightEstimates& before, const std::vector<Eigen::Vector3d>& last_move, LightEstimates& lights) {
-  for (std::size_t j = 0; j < last_move.size(); ++j) {
+// earlier: before the round before; empty in the first.
+void come_to_rest(const LightEstimates& earlier, const LightEstimates& before, LightEstimates& lights) {
+  for (std::size_t j = 0; j < earlier.size(); ++j) {
+    const Eigen::Vector3d last_move = before[j].position - earlier[j].position;
     const Eigen::Vector3d move = lights[j].position - before[j].position;
-    const double ratio = move.dot(last_move[j]) / std::max(last_move[j].squaredNorm(), 1e-300);
+    const double ratio = move.dot(last_move) / std::max(last_move.squaredNorm(), 1e-300);
     if (ratio < 0 && ratio > -1) lights[j].position = before[j].position + move / (1 - ratio);
   }
-}
-
-std::vector<Eigen::Vector3d> moves(const LightEstimates& before, const LightEstimates& lights) {
-  std::vector<Eigen::Vector3d> moved;
-  for (std::size_t j = 0; j < lights.size(); ++j) moved.emplace_back(lights[j].position - before[j].position);
-  return moved;
 }
 
 // Intensities of one channel, none negative: those that would be are held at zero.
@@ -238,17 +234,17 @@ PolishedLights refine_over_many(const ManyReceivers& many, const LightEstimates&
   for (const LightEstimate& light : start) refined.lights.push_back({light.position, light.intensity});
   if (start.empty() || many.response.receiver_count() == 0) return refined;
   double move = std::numeric_limits<double>::infinity();
-  std::vector<Eigen::Vector3d> last_move;
+  LightEstimates earlier;
   while (move > kAtRest * double(many.response.grid().region.diagonal()) && refined.rounds < kRounds) {
     const LightEstimates before = refined.lights;
     Observations observations = many.observations;
     const TracedIndirect indirect = trace_indirect(many, refined.lights, others);
     observations.wanted -= indirect.others;
     descend(many.response, observations, indirect.unity, refined.lights);
-    come_to_rest(before, last_move, refined.lights);
+    come_to_rest(earlier, before, refined.lights);
     refined.error = fit_brightness(many, observations, indirect.unity, refined.lights);
     move = largest_move(refined.lights, before);
-    last_move = moves(before, refined.lights);
+    earlier = before;
     ++refined.rounds;
   }
   return refined;
