@@ -117,7 +117,8 @@ CHIARO_DISPATCH void weigh_lanes(const std::vector<LightLanes>& lanes, const Pla
 
 }  // namespace
 
-LightSelection::LightSelection(const Lights& lights) : lights_(lights), place_(lights.size(), 0) {
+LightSelection::LightSelection(const Lights& lights, LightVisibility* visibility)
+    : lights_(lights), visibility_(visibility), place_(lights.size(), 0) {
   LightTree tree(bounds_of(lights));
   for (const std::uint32_t light : tree.lights_in_order()) order_.push_back(light);
   placed_ = order_.size();
@@ -151,6 +152,17 @@ void LightSelection::set_lane(const Light& light, std::size_t lane, LightLanes& 
   lanes.intensity[lane] = max_component(spot != nullptr ? spot->intensity : point->intensity);
 }
 
+void LightSelection::record(std::size_t light, Vec3f point, Vec3f normal, bool seen) const {
+  if (visibility_ == nullptr || !weighs_all()) return;
+  visibility_->record(visibility_->part_of(point, normal), place_[light], seen);
+}
+
+void LightSelection::apply_visibility(Vec3f point, Vec3f normal, Weights& weights) const {
+  if (visibility_ == nullptr) return;
+  const float* factors = visibility_->factors(visibility_->part_of(point, normal)).data();
+  for (std::size_t k = 0; k < groups_ * kLanes; ++k) weights.of_light[k] *= factors[k];
+}
+
 // Every light's weight is there; the sums are not.
 void LightSelection::sum_groups(Weights& weights) const {
   weights.total = 0;
@@ -174,6 +186,7 @@ void LightSelection::weigh_distant(Vec3f p, Vec3f n, const Response& response, W
 void LightSelection::weigh(Vec3f point, Vec3f normal, Weights& weights) const {
   weigh_lanes(lanes_, {point, normal}, weights.of_light.data());
   weigh_distant(point, normal, NoResponse{}, weights);
+  apply_visibility(point, normal, weights);
   sum_groups(weights);
 }
 
@@ -183,6 +196,7 @@ void LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsd
   const SketchResponse response(normal, to_viewer, surface);
   weigh_lanes(lanes_, {point, normal}, response, weights.of_light.data());
   weigh_distant(point, normal, response, weights);
+  apply_visibility(point, normal, weights);
   sum_groups(weights);
 }
 

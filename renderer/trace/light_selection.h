@@ -9,6 +9,7 @@
 #include "renderer/scene/light.h"
 #include "renderer/trace/bsdf.h"
 #include "renderer/trace/light_tree.h"
+#include "renderer/trace/light_visibility.h"
 
 namespace chiaro::renderer {
 
@@ -21,7 +22,8 @@ struct LightLanes {
 };
 
 // In proportion to the irradiance that a light would give if nothing stood between: exactly that among up to some
-// hundred lights, as a light tree bounds it among more. Environments are left to EnvironmentSampling.
+// hundred lights, as a light tree bounds it among more; and, among the former, to what shadow rays have learnt of what
+// stands between. Environments are left to EnvironmentSampling.
 class LightSelection {
  public:
   // Up to so many lights all are asked where a surface is seen directly.
@@ -29,8 +31,8 @@ class LightSelection {
   // Up to so many lights all are weighed. (Weighing four takes about as long as one step down the tree.)
   static constexpr std::size_t kWeighed = 256;
 
-  // Keeps a reference to `lights`, which must outlive it.
-  explicit LightSelection(const Lights& lights);
+  // Keeps references to both, which must outlive it. visibility: nullptr where nothing is learnt.
+  explicit LightSelection(const Lights& lights, LightVisibility* visibility = nullptr);
   bool few() const { return order_.size() <= kFew; }
   bool weighs_all() const { return tree_.empty(); }
 
@@ -44,8 +46,12 @@ class LightSelection {
   // With which pick() gives the light.
   float probability(std::size_t light, Vec3f point, Vec3f normal) const;
 
+  // A shadow ray from there to the light, for what is learnt.
+  void record(std::size_t light, Vec3f point, Vec3f normal, bool seen) const;
+
   // What lights would bring to a point, one by one, and in groups.
   static constexpr std::size_t kLanes = LightLanes::kCount;
+  static_assert(kLanes == LightVisibility::kLanes);
   struct Weights {
     std::array<float, kWeighed + kLanes> of_light;  // in the order of lights_in_order(), padded with zeros
     std::array<float, kWeighed / kLanes + 1> of_group;
@@ -74,11 +80,13 @@ class LightSelection {
   static void set_lane(const Light& light, std::size_t lane, LightLanes& lanes);
   template <class Response>
   void weigh_distant(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
+  void apply_visibility(Vec3f point, Vec3f normal, Weights& weights) const;
   void sum_groups(Weights& weights) const;
   float distant_weight(std::size_t light, Vec3f normal) const;
   Pick pick_from_tree(Vec3f point, Vec3f normal, double u) const;
 
   const Lights& lights_;
+  LightVisibility* visibility_;
   std::vector<std::size_t> order_;  // punctual lights, neighbours together, then those at infinity
   std::vector<std::size_t> place_;  // per light, in order_
   std::size_t placed_ = 0;          // lights with a position

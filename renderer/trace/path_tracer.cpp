@@ -40,10 +40,11 @@ double next_fine(Sampler& sampler) {
 
 }  // namespace
 
-PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options)
+PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options,
+                       LightVisibility* visibility)
     : tracer_(tracer),
       lights_(lights),
-      selection_(lights),
+      selection_(lights, visibility),
       emission_(lights),
       subpath_reach_(kSubpathReach * tracer.bounds().diagonal()),
       emitters_(options.scene_emission ? tracer.scene() : scene_without_emission()),
@@ -113,11 +114,19 @@ void PathTracer::add_if_seen(const Vertex& v, std::size_t source, const LightSam
   path.light.add(v.index, source, light_through(v, from, path.sampler.next_bits()) * value);
 }
 
+void PathTracer::add_punctual_if_seen(const Vertex& v, std::size_t light, const PunctualSample& s, Vec3f value,
+                                      Path& path) const {
+  if (!(max_component(value) > 0)) return;
+  const Vec3f through = light_through(v, {s.to_light, s.distance, ClearSurfaces::kPassAll}, path.sampler.next_bits());
+  selection_.record(light, v.position, v.pick_normal(), max_component(through) > 0);
+  path.light.add(v.index, light, through * value);
+}
+
 void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const PunctualSample s = sample_punctual(lights_[i], v.position);
     const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance;
-    add_if_seen(v, i, {s.to_light, s.distance, ClearSurfaces::kPassAll}, value, path);
+    add_punctual_if_seen(v, i, s, value, path);
   }
 }
 
@@ -125,7 +134,7 @@ void PathTracer::add_chosen(const Vertex& v, LightSelection::Pick chosen, Vec3f 
   const PunctualSample s = sample_punctual(lights_[chosen.light], v.position);
   const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / chosen.probability;
   if (!is_finite(value)) return;
-  add_if_seen(v, chosen.light, {s.to_light, s.distance, ClearSurfaces::kPassAll}, value, path);
+  add_punctual_if_seen(v, chosen.light, s, value, path);
 }
 
 void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
@@ -165,7 +174,7 @@ void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Path& path)
     const float subpath_pdf = emission_.pdf(i, -s.to_light) * cosine / (s.distance * s.distance);
     weight = balance_heuristic(v.area_pdf * probability, subpath_pdf);
   }
-  add_if_seen(v, i, {s.to_light, s.distance, ClearSurfaces::kPassAll}, weight * value, path);
+  add_punctual_if_seen(v, i, s, weight * value, path);
 }
 
 void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Path& path) const {

@@ -43,8 +43,10 @@ struct PathLight {
 
 class PathTracer {
  public:
-  // Keeps references to both, which must outlive it. How many samples are taken is the caller's business.
-  PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options);
+  // Keeps references to all, which must outlive it. How many samples are taken is the caller's business, and so is to
+  // let `visibility` learn; nullptr: nothing is learnt.
+  PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options,
+             LightVisibility* visibility = nullptr);
 
   // Radiance leaving `vertex` towards to_viewer, its emission left out, times `throughput`, added to `light`.
   // `index` is the number of `vertex` on its path.
@@ -114,6 +116,8 @@ class PathTracer {
   void add_lights(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_indirect_samples(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void add_punctual_if_seen(const Vertex& vertex, std::size_t light, const PunctualSample& sample, Vec3f value,
+                            Path& path) const;
   void add_all_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_some_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_chosen(const Vertex& vertex, LightSelection::Pick chosen, Vec3f throughput, Path& path) const;

@@ -174,7 +174,8 @@ Control share_of(const Control& control, const Clock& clock, const Progress& pro
 }
 
 // Passes until nothing is asked for, the time is spent, or the control asks to stop. Returns whether it did.
-bool add_passes(const FrameTask& task, const Clock& clock, const Control& control, Film& film) {
+bool add_passes(const FrameTask& task, const Clock& clock, const Control& control, LightVisibility* visibility,
+                Film& film) {
   const RenderOptions& options = task.options;
   for (;;) {
     const PassPlan plan = plan_pass(film, options.noise_threshold);
@@ -187,6 +188,7 @@ bool add_passes(const FrameTask& task, const Clock& clock, const Control& contro
       if (!every_pixel_has_samples(film)) throw;
       return true;
     }
+    if (visibility != nullptr) visibility->learn();
     if (control.report_noise) control.report_noise(film.relative_standard_error());
   }
 }
@@ -207,14 +209,17 @@ void count_samples(const Film& film, Frame& frame) {
 Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights, const RenderOptions& options,
              const Control& control) {
   const Clock clock(options.time_limit);
-  const PathTracer paths(tracer, lights, options.trace);
+  std::optional<LightVisibility> visibility;
+  if (lights.size() > LightSelection::kFew) visibility.emplace(tracer.bounds(), lights.size());
+  LightVisibility* const learnt = visibility ? &*visibility : nullptr;
+  const PathTracer paths(tracer, lights, options.trace, learnt);
   const CameraRays rays(camera, options.width, options.height, options.lens);
   const PixelFilter filter = options.box_filter ? PixelFilter::box() : PixelFilter::blackman_harris();
   Film film(options.width, options.height, options.layers, lights, options.trace.samples);
   const MatteIds mattes = film.wants_mattes() ? matte_ids(tracer.scene()) : MatteIds{};
   const FrameTask task{tracer, paths, rays, filter, options, mattes};
   Frame frame;
-  frame.interrupted = add_passes(task, clock, control, film);
+  frame.interrupted = add_passes(task, clock, control, learnt, film);
   frame.image = film.finish();
   frame.lens = options.lens;
   if (film.wants_mattes()) frame.mattes = mattes_of(tracer.scene());

@@ -34,12 +34,31 @@ struct Count {
   std::size_t lights;
 };
 
-class LightSelectionOf : public testing::TestWithParam<Count> {};
+// In the box of the lights, what shadow rays may have learnt: some lights are seen here and there.
+void teach(const Lights& lights, LightVisibility& visibility) {
+  for (std::uint32_t k = 0; k < 20000; ++k) {
+    Sampler sampler(7, 0, k);
+    const Vec2f xy = sampler.next_2d();
+    const Vec3f point{6 * xy.x, 6 * xy.y, 6 * sampler.next_1d()};
+    const auto light = std::size_t(sampler.next_1d() * float(lights.size()));
+    visibility.record(visibility.part_of(point, uniform_direction(sampler.next_2d())), light, light % 3 == 0);
+  }
+  visibility.learn();
+}
+
+class LightSelectionOf : public testing::TestWithParam<Count> {
+ protected:
+  LightSelectionOf() : lights(mixed_lights(GetParam().lights)), visibility({{0, 0, 0}, {6, 6, 6}}, lights.size()) {
+    teach(lights, visibility);
+  }
+  Lights lights;
+  LightVisibility visibility;
+  LightSelection ignorant{lights}, taught{lights, &visibility};
+};
 
 TEST_P(LightSelectionOf, PicksCarryTheirProbability) {
-  const Lights lights = mixed_lights(GetParam().lights);
-  const LightSelection selection(lights);
   for (std::uint32_t k = 0; k < 1000; ++k) {
+    const LightSelection& selection = k % 2 == 0 ? ignorant : taught;
     Sampler sampler(2, 0, k);
     const Vec2f xy = sampler.next_2d();
     const Vec3f point{6 * xy.x, 6 * xy.y, 3}, normal = uniform_direction(sampler.next_2d());
@@ -52,10 +71,9 @@ TEST_P(LightSelectionOf, PicksCarryTheirProbability) {
 
 // E[irradiance / probability] is the irradiance of all lights together, to five standard errors (p < 0.0001 %).
 TEST_P(LightSelectionOf, TheExpectationIsTheSumOverAllLights) {
-  const Lights lights = mixed_lights(GetParam().lights);
-  const LightSelection selection(lights);
-  for (std::uint32_t k = 0; k < 6; ++k) {
-    Sampler where(3, 0, k);
+  for (std::uint32_t k = 0; k < 12; ++k) {
+    const LightSelection& selection = k % 2 == 0 ? ignorant : taught;
+    Sampler where(3, 0, k / 2);
     const Vec2f xy = where.next_2d();
     const Vec3f point{6 * xy.x, 6 * xy.y, 3}, normal = uniform_direction(where.next_2d());
     const auto irradiance = [&](std::size_t i) {

@@ -196,15 +196,45 @@ TEST(Render, IlluminationLayerIsTheFrameWithoutTheAlbedo) {
   }
 }
 
+TEST(Render, LearnsWhichLightsStandBehindWalls) {
+  // A floor, a wall beside it, four lights on this side and sixty on the other.
+  Scene scene;
+  add_mesh(scene, rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert({0.5F, 0.5F, 0.5F}), "floor");
+  add_mesh(scene, rectangle({1, 0, -5}, {0, 0, 10}, {0, 5, 0}), lambert({0.5F, 0.5F, 0.5F}), "wall");
+  const RayTracer tracer(scene);
+  Lights lights;
+  for (int i = 0; i < 64; ++i) {
+    const float x = i < 4 ? -0.5F : 2, z = 0.1F * float(i % 4);
+    lights.emplace_back(PointLight{"", {x, 1 + 0.05F * float(i / 4), z}, {10, 10, 10}});
+  }
+  const Camera camera = camera_above(1);
+  const Lights seen(lights.begin(), lights.begin() + 4);
+  const Image expected = render(tracer, camera, seen, sized(16, 16, {.samples = 256, .bounces = 0})).image;
+  const auto frame = [&](int samples) {
+    return render(tracer, camera, lights, sized(16, 16, {.samples = samples, .bounces = 0, .seed = 3}));
+  };
+  const Frame few = frame(4), many = frame(256);
+  double sum = 0, of_expected = 0;
+  for (std::size_t i = 0; i < expected.pixels.size(); i += 4) {
+    sum += double(many.image.pixels[i]);
+    of_expected += double(expected.pixels[i]);
+  }
+  EXPECT_NEAR(sum / of_expected, 1, 5 * many.relative_standard_error / 16);
+  // An eighth of the error is what 64 times the samples bring by themselves.
+  EXPECT_LT(many.relative_standard_error, 0.5 * few.relative_standard_error / 8);
+}
+
 TEST(Render, SameBytesForAnyNumberOfThreads) {
   const Scene scene = corner_with_lamp();
   const RayTracer tracer(scene);
+  Lights lights = two_lights();
+  for (int i = 0; i < 6; ++i) lights.emplace_back(PointLight{"", {float(i), 1, 3}, {1, 2, 3}});
   RenderOptions options = sized(32, 24, {.samples = 8, .seed = 9});
   options.layers = frame_layers();
   std::vector<std::vector<float>> pixels;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
-    pixels.push_back(render(tracer, default_camera(scene), two_lights(), options).image.pixels);
+    pixels.push_back(render(tracer, default_camera(scene), lights, options).image.pixels);
   }
   ASSERT_EQ(pixels[0].size(), pixels[1].size());
   EXPECT_EQ(std::memcmp(pixels[0].data(), pixels[1].data(), pixels[0].size() * sizeof(float)), 0);

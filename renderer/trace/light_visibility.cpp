@@ -1,0 +1,65 @@
+#include "renderer/trace/light_visibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr std::size_t kMostCounts = 2'000'000;  // 24 MB
+constexpr double kMostCells = 32 * 32 * 32;
+constexpr std::size_t kWays = 6;
+// No light's chance falls below this part of what it would be if it were seen.
+constexpr float kLeastFactor = 0.05F;
+
+std::size_t way_of(Vec3f normal) {
+  const Vec3f a = abs(normal);
+  const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  return 2 * std::size_t(axis) + (normal[axis] < 0 ? 1 : 0);
+}
+
+}  // namespace
+
+LightVisibility::LightVisibility(const Box3f& bounds, std::size_t lights)
+    : lights_(std::max<std::size_t>(1, (lights + kLanes - 1) / kLanes) * kLanes), origin_(bounds.min) {
+  const double cells = std::clamp(double(kMostCounts) / double(kWays * lights_), 1.0, kMostCells);
+  const Vec3f extent = bounds.extent();
+  const double least = 1e-3 * double(max_component(extent));  // of a flat scene
+  double volume = 1;
+  for (int a = 0; a < 3; ++a) volume *= std::max(double(extent[a]), least);
+  const double edge = std::cbrt(volume / cells);
+  std::size_t all = kWays * lights_;
+  for (int a = 0; a < 3; ++a) {
+    counts_[a] = edge > 0 ? std::max(1, int(double(extent[a]) / edge)) : 1;
+    cells_per_metre_[a] = extent[a] > 0 ? float(counts_[a]) / extent[a] : 0;
+    all *= std::size_t(counts_[a]);
+  }
+  rays_ = std::vector<std::atomic<std::uint64_t>>(all);
+  factors_.assign(all, 1);
+}
+
+std::size_t LightVisibility::part_of(Vec3f point, Vec3f normal) const {
+  std::size_t cell = 0;
+  for (int a = 2; a >= 0; --a) {
+    const float at = (point[a] - origin_[a]) * cells_per_metre_[a];
+    cell = cell * std::size_t(counts_[a]) + std::size_t(std::clamp(at, 0.0F, float(counts_[a] - 1)));
+  }
+  return kWays * cell + way_of(normal);
+}
+
+void LightVisibility::record(std::size_t part, std::size_t light, bool seen) {
+  rays_[part * lights_ + light].fetch_add(seen ? (std::uint64_t(1) << 32) + 1 : 1, std::memory_order_relaxed);
+}
+
+// The chance of least variance is in proportion to the root of the mean square, which for a light that is seen or not
+// is the root of how often it is seen; that as if one more ray had seen it.
+void LightVisibility::learn() {
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const std::uint64_t rays = rays_[i].load(std::memory_order_relaxed);
+    if (rays == 0) continue;
+    const auto all = float(rays & 0xffffffffU), seen = float(rays >> 32);
+    factors_[i] = std::max(kLeastFactor, std::sqrt((seen + 1) / (all + 1)));
+  }
+}
+
+}  // namespace chiaro::renderer
