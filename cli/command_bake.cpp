@@ -6,28 +6,49 @@
 #include "cli/add_options.h"
 #include "cli/bake_summary.h"
 #include "cli/commands.h"
+#include "cli/memory.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
 #include "cli/text_output.h"
 #include "cli/transport_options.h"
-#include "inverse/transport/bake.h"
+#include "cli/usage_error.h"
+#include "inverse/transport/bake_file.h"
+#include "renderer/core/error.h"
 
 namespace chiaro::cli {
 namespace {
+
+// "2/8"
+inverse::Shard parse_shard(const std::string& text) {
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  constexpr int kMostShards = 1'000'000;
+  try {
+    const int count = parse_count(text.substr(std::min(slash + 1, text.size())), {1, kMostShards});
+    const int index = parse_count(text.substr(0, slash), {1, count});
+    return {std::size_t(index) - 1, std::size_t(count)};
+  } catch (const UsageError&) {
+    throw UsageError(fmt::format("'{}' (expected I/N, with I from 1 to N)", text));
+  }
+}
 
 struct BakeCommand {
   CommonOptions common;
   TransportOptions transport;
   SurfaceOptions surface;
   GridOptions grid;
+  inverse::BakeFileOptions file;
+  std::optional<double> memory;  // bytes
   std::string scene, output;
 };
 
-void print_summary(Session& session, const BakeCommand& options, const inverse::BakeResult& result) {
-  const inverse::TransportCache& cache = result.cache;
+void print_summary(Session& session, const BakeCommand& options, const inverse::TransportCache& cache,
+                   const inverse::BakeSummary& baked) {
   JsonObject summary{{"output", options.output}};
-  for (auto& figure : bake_summary(result)) summary.push_back(std::move(figure));
+  for (auto& figure : bake_summary(cache, baked)) summary.push_back(std::move(figure));
+  if (options.file.shard.count > 1) {
+    summary.emplace_back("shard", fmt::format("{}/{}", options.file.shard.index + 1, options.file.shard.count));
+  }
   summary.emplace_back("seconds", session.seconds());
   session.finish(
       summary,
@@ -36,12 +57,22 @@ void print_summary(Session& session, const BakeCommand& options, const inverse::
                                            cache.grid.counts[0], cache.grid.counts[1], cache.grid.counts[2])},
                     {"spacing", text_of_vector(cache.grid.spacing) + " m"},
                     {"error of indirect light", text_of_percent(cache.indirect_relative_error)},
-                    {"direct", text_of_seconds(result.summary.direct_seconds)},
-                    {"indirect", text_of_seconds(result.summary.indirect_seconds)},
-                    {"check", text_of_seconds(result.summary.check_seconds)},
+                    {"direct", text_of_seconds(baked.direct_seconds)},
+                    {"indirect", text_of_seconds(baked.indirect_seconds)},
+                    {"check", text_of_seconds(baked.check_seconds)},
+                    {"write", text_of_seconds(baked.write_seconds)},
                     {"time", text_of_seconds(session.seconds())},
                     {"written", fmt::format("{}, {}", options.output,
                                             text_of_bytes(double(std::filesystem::file_size(options.output))))}}));
+}
+
+inverse::BakeSummary bake_saying_what_stays(const BakeCommand& options, inverse::Baker& baker, Session& session) {
+  try {
+    return inverse::bake_to_file(baker, options.output, options.file, session.control());
+  } catch (const renderer::Interruption&) {
+    throw renderer::Interruption(fmt::format("what is done stays in {}, --resume goes on from there",
+                                             inverse::unfinished_bake(options.output).string()));
+  }
 }
 
 int run_bake(const BakeCommand& options) {
@@ -53,11 +84,10 @@ int run_bake(const BakeCommand& options) {
   const inverse::LightGrid grid =
       inverse::make_light_grid(*stage.tracer, light_grid_options(*stage.scene, options.grid));
   session.stop_if_interrupted();
-  require_memory_for_bake(options.scene, receivers, grid);
-  const inverse::BakeResult result = inverse::bake(*stage.tracer, receivers, grid,
-                                                   bake_settings(options.transport, options.common), session.control());
-  inverse::save_transport_cache(result.cache, options.output);
-  print_summary(session, options, result);
+  inverse::Baker baker(*stage.tracer, receivers, grid, bake_settings(options.transport, options.common),
+                       memory_left(options.memory), session.control());
+  const inverse::BakeSummary baked = bake_saying_what_stays(options, baker, session);
+  print_summary(session, options, baker.header(), baked);
   return kDone;
 }
 
@@ -70,10 +100,17 @@ CommandRun add_bake(CLI::App& command) {
   add_surface_options(command, options->surface);
   add_grid_options(command, options->grid);
   add_transport_options(command, options->transport, "Gather rays per receiver");
+  add_parsed(command, {"--shard", "I/N", "Bake part I of N, for `chiaro merge`; 1/N is the first"},
+             [options](const std::string& text) { options->file.shard = parse_shard(text); });
+  add_flag(command, "--resume", options->file.resume,
+           "Go on with a bake that was interrupted or killed, if there is one");
+  add_parsed(command, {"--memory", "SIZE", "Take up so much memory at most: 800M, 4G (default: 3/4 of this machine's)"},
+             [options](const std::string& text) { options->memory = parse_bytes(text); });
   add_common_options(command, options->common);
   set_examples(command,
                "  chiaro bake room.glb -o room.exr --on painted.glb --grid 12,8,12\n"
-               "  chiaro bake room.glb -o room.exr --region Ceiling --bounces 2");
+               "  chiaro bake room.glb -o room.exr --region Ceiling --bounces 2\n"
+               "  chiaro bake room.glb -o part2.exr --shard 2/8 --resume --memory 4G");
   return [options] { return run_bake(*options); };
 }
 

@@ -9,11 +9,12 @@
 #include "cli/commands.h"
 #include "cli/comparison_summary.h"
 #include "cli/frame_output.h"
+#include "cli/memory.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/solve_options.h"
 #include "cli/text_output.h"
-#include "inverse/transport/bake.h"
+#include "inverse/transport/bake_file.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 
@@ -36,11 +37,10 @@ struct RunCommand {
 JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const inverse::Target& target,
                       const inverse::SolveProblem& problem, Session& session) {
   const inverse::LightGrid grid = inverse::make_light_grid(*stage.tracer, problem.grid);
-  require_memory_for_bake(options.scene, target.receivers, grid);
-  const inverse::BakeResult result =
-      inverse::bake(*stage.tracer, target.receivers, grid, problem.bake, session.control());
-  inverse::save_transport_cache(result.cache, options.folder() / "cache.exr");
-  return bake_summary(result);
+  inverse::Baker baker(*stage.tracer, target.receivers, grid, problem.bake, memory_left({}), session.control());
+  const inverse::BakeSummary summary =
+      inverse::bake_to_file(baker, options.folder() / "cache.exr", {}, session.control());
+  return bake_summary(baker.header(), summary);
 }
 
 renderer::Lights lights_of(const inverse::SolveResult& result, const inverse::SolveProblem& problem) {

@@ -18,6 +18,7 @@ CommandRun add_receivers(CLI::App& command);
 CommandRun add_illuminate(CLI::App& command);
 CommandRun add_paint(CLI::App& command);
 CommandRun add_bake(CLI::App& command);
+CommandRun add_merge(CLI::App& command);
 CommandRun add_solve(CLI::App& command);
 CommandRun add_render(CLI::App& command);
 CommandRun add_compare(CLI::App& command);

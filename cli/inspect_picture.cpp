@@ -5,6 +5,7 @@
 
 #include "cli/bake_summary.h"
 #include "cli/inspect.h"
+#include "cli/memory.h"
 #include "inverse/transport/transport_cache.h"
 #include "renderer/image/image_file.h"
 

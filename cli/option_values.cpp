@@ -79,6 +79,21 @@ int parse_count(std::string_view text, const CountRange& range) {
   return value;
 }
 
+double parse_bytes(std::string_view text) {
+  constexpr std::string_view kUnits = "kMGT";
+  const std::string_view all = text;
+  double scale = 1;
+  if (!text.empty()) {
+    if (const std::size_t unit = kUnits.find(text.back()); unit != std::string_view::npos) {
+      scale = std::pow(1000.0, double(unit + 1));
+      text.remove_suffix(1);
+    }
+  }
+  double value = 0;
+  if (!parses_whole(text, value) || !contains(kPositive, value)) refuse(all, "a size above 0: 800M, 4G");
+  return scale * value;
+}
+
 std::uint64_t parse_seed(std::string_view text) {
   std::uint64_t value = 0;
   if (!parses_whole(text, value)) refuse(text, "a whole number from 0 to 18446744073709551615");

@@ -38,6 +38,8 @@ template <>
 float parse_as<float>(std::string_view text, const NumberRange& range);
 
 int parse_count(std::string_view text, const CountRange& range);
+// "800M", "1.5G": bytes, in powers of 1000.
+double parse_bytes(std::string_view text);
 std::uint64_t parse_seed(std::string_view text);
 
 // Exactly `count` numbers with commas between.

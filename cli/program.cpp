@@ -30,6 +30,7 @@ constexpr CommandEntry kCommands[] = {
     {"illuminate", "Trace the illumination of every receiver under given lights", add_illuminate},
     {"paint", "Apply brush strokes to an illumination", add_paint},
     {"bake", "Compute the transport of a grid of unity lights to every receiver", add_bake},
+    {"merge", "Join the parts of a bake", add_merge},
     {"solve", "Find the lights that produce a painted illumination", add_solve},
     {"render", "Render the final frame", add_render},
     {"compare", "Compare two frames or two targets", add_compare},
@@ -91,8 +92,8 @@ int run_program(int argc, const char* const* argv) {
     program.footer("Example:\n  chiaro run room.glb --target painted.glb -o room_lit");
     const AddedCommands commands = add_commands(program);
     return parse_and_run(program, commands, argc, argv);
-  } catch (const renderer::Interruption&) {
-    std::fputs("chiaro: interrupted\n", stderr);
+  } catch (const renderer::Interruption& interruption) {
+    std::fprintf(stderr, "chiaro: %s\n", one_line(interruption.what()).c_str());
     return kInterrupted;
   } catch (const std::bad_alloc&) {
     return fail("out of memory");

@@ -10,7 +10,6 @@
 #include "renderer/trace/bsdf.h"
 
 namespace chiaro::inverse {
-namespace {
 
 using renderer::RayTracer;
 using renderer::Sampler;
@@ -18,11 +17,50 @@ using renderer::SurfacePoint;
 using renderer::SurfaceSample;
 using renderer::Vec3f;
 
+// The nearest gather point in position and orientation.
+class NearestGatherPoint {
+ public:
+  NearestGatherPoint(std::vector<SurfaceSample> points, float spacing)
+      : scale_(kOrientationWeight * spacing), cloud_{std::move(points), scale_}, tree_(6, cloud_, {8}) {
+    tree_.buildIndex();
+  }
+
+  std::uint32_t find(const SurfaceSample& at) const {
+    const float query[6] = {at.position.x,        at.position.y,        at.position.z,
+                            scale_ * at.normal.x, scale_ * at.normal.y, scale_ * at.normal.z};
+    std::uint32_t index = 0;
+    float squared_distance = 0;
+    tree_.knnSearch(query, 1, &index, &squared_distance);
+    return index;
+  }
+
+ private:
+  struct Cloud {
+    std::vector<SurfaceSample> points;
+    float scale;
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    float kdtree_get_pt(std::uint32_t i, std::size_t d) const {
+      return d < 3 ? points[i].position[int(d)] : scale * points[i].normal[int(d) - 3];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 6, std::uint32_t>;
+
+  static constexpr float kOrientationWeight = 3.0F;  // turning a normal by 1 counts as this many spacings
+  float scale_;
+  Cloud cloud_;
+  Tree tree_;
+};
+
+namespace {
+
 constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
 constexpr int kPathsPerGatherPoint = 8;
 constexpr float kNearField = 8.0F;  // cell radii
 constexpr int kRaysPerGatherPoint = 64;
-constexpr float kOrientationWeight = 3.0F;  // turning a normal by 1 counts as this many spacings
 constexpr int kMostBounces = 400;
 constexpr double kNegligibleBounce = 1e-4;  // of the light so far
 
@@ -76,43 +114,6 @@ std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std:
   return chosen;
 }
 
-// The nearest gather point in position and orientation.
-class NearestGatherPoint {
- public:
-  NearestGatherPoint(const std::vector<SurfaceSample>& points, float spacing)
-      : scale_(kOrientationWeight * spacing), cloud_{points, scale_}, tree_(6, cloud_, {8}) {
-    tree_.buildIndex();
-  }
-
-  std::uint32_t find(const SurfaceSample& at) const {
-    const float query[6] = {at.position.x,        at.position.y,        at.position.z,
-                            scale_ * at.normal.x, scale_ * at.normal.y, scale_ * at.normal.z};
-    std::uint32_t index = 0;
-    float squared_distance = 0;
-    tree_.knnSearch(query, 1, &index, &squared_distance);
-    return index;
-  }
-
- private:
-  struct Cloud {
-    const std::vector<SurfaceSample>& points;
-    float scale;
-    std::size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(std::uint32_t i, std::size_t d) const {
-      return d < 3 ? points[i].position[int(d)] : scale * points[i].normal[int(d) - 3];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 6, std::uint32_t>;
-
-  float scale_;
-  Cloud cloud_;
-  Tree tree_;
-};
-
 // Mean distance between neighbours if the points lay evenly on a box of the scene's size.
 float typical_spacing(const RayTracer& tracer, std::size_t points) {
   const Vec3f e = tracer.bounds().extent();
@@ -138,14 +139,15 @@ void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, c
   }
 }
 
-SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from, int rays, std::uint64_t seed,
-                           const NearestGatherPoint& nearest, const renderer::Control& control) {
+// `first`: the number of the first, of which the others follow.
+SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from, std::size_t first, int rays,
+                           std::uint64_t seed, const NearestGatherPoint& nearest, const renderer::Control& control) {
   std::vector<std::vector<SparseTransport::Entry>> rows(from.size());
   constexpr std::size_t kBlock = 32;
   renderer::parallel_for((from.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(from.size(), (block + 1) * kBlock); ++i) {
       for (int k = 0; k < rays; ++k) {
-        Sampler sampler(seed, std::uint32_t(i), std::uint32_t(k));
+        Sampler sampler(seed, std::uint32_t(first + i), std::uint32_t(k));
         if (const auto hit = gather(tracer, from[i], sampler)) {
           rows[i].push_back({nearest.find(hit->at), hit->albedo / float(rays)});
         }
@@ -235,8 +237,8 @@ float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
   return projected > 0 ? projected / (renderer::kPi * d2 * std::sqrt(d2)) : 0;
 }
 
-GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
-                                    const GatherOptions& options, const renderer::Control& control) {
+GatherOperator make_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
+                                  const GatherOptions& options, const renderer::Control& control) {
   GatherOperator gather;
   gather.bounces = options.bounces;
   if (options.bounces == 0) return gather;
@@ -244,21 +246,40 @@ GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const Sur
   const auto all = trace_gather_paths(tracer, receivers, kPathsPerGatherPoint * wanted, options.seed + 1);
   gather.points = every_nth(all, wanted);
   if (gather.points.empty()) return gather;
-  const NearestGatherPoint nearest(gather.points, typical_spacing(tracer, gather.points.size()));
-  fill_cells(gather, all, nearest);
-  gather.point_from_point = trace_rows(tracer, gather.points, kRaysPerGatherPoint, options.seed + 2, nearest, control);
-  gather.receiver_from_point = trace_rows(tracer, receivers, options.samples, options.seed + 3, nearest, control);
-  gather.ray_count = gather.points.size() * kRaysPerGatherPoint + receivers.size() * std::size_t(options.samples);
+  gather.nearest =
+      std::make_shared<const NearestGatherPoint>(gather.points, typical_spacing(tracer, gather.points.size()));
+  fill_cells(gather, all, *gather.nearest);
+  gather.point_from_point =
+      trace_rows(tracer, gather.points, 0, kRaysPerGatherPoint, options.seed + 2, *gather.nearest, control);
+  gather.ray_count = gather.points.size() * kRaysPerGatherPoint;
   return gather;
+}
+
+SparseTransport trace_receiver_rows(const RayTracer& tracer, const GatherOperator& gather,
+                                    std::span<const SurfaceSample> receivers, std::size_t first_receiver,
+                                    const GatherOptions& options, const renderer::Control& control) {
+  return trace_rows(tracer, receivers, first_receiver, options.samples, options.seed + 3, *gather.nearest, control);
+}
+
+GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
+                                    const GatherOptions& options, const renderer::Control& control) {
+  GatherOperator gather = make_gather_points(tracer, receivers, options, control);
+  if (gather.points.empty()) return gather;
+  gather.receiver_from_point = trace_receiver_rows(tracer, gather, receivers, 0, options, control);
+  gather.ray_count += receivers.size() * std::size_t(options.samples);
+  return gather;
+}
+
+std::vector<LightBlock> illumination_of_gather_points(const RayTracer& tracer, const GatherOperator& gather,
+                                                      std::span<const Vec3f> lights) {
+  return sum_of_bounces(gather.point_from_point, direct_at_gather_points(tracer, gather, lights), gather.bounces);
 }
 
 std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const Vec3f> lights) {
   std::vector<LightBlock> result(gather.receiver_from_point.row_count());
   if (gather.points.empty()) return result;
-  const std::vector<LightBlock> sum =
-      sum_of_bounces(gather.point_from_point, direct_at_gather_points(tracer, gather, lights), gather.bounces);
-  multiply(gather.receiver_from_point, sum, result);
+  multiply(gather.receiver_from_point, illumination_of_gather_points(tracer, gather, lights), result);
   return result;
 }
 

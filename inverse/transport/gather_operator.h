@@ -12,6 +12,7 @@
 // `samples` (more gather points), or is the material's; a bake measures it against the path tracer.
 // Source: Hašan, Pellacini, Bala, Direct-to-Indirect Transfer for Cinematic Relighting, 2006.
 
+#include <memory>
 #include <vector>
 
 #include "inverse/transport/sparse_transport.h"
@@ -20,6 +21,8 @@
 
 namespace chiaro::inverse {
 
+class NearestGatherPoint;
+
 struct GatherOperator {
   std::vector<renderer::SurfaceSample> points;
   // Samples of the cell of point i: cell_samples[cell_start[i]] … cell_samples[cell_start[i + 1] − 1].
@@ -27,8 +30,9 @@ struct GatherOperator {
   std::vector<renderer::SurfaceSample> cell_samples;
   std::vector<float> cell_radius;       // metres, root mean square over the cell
   SparseTransport point_from_point;     // K_gg
-  SparseTransport receiver_from_point;  // K_rg
-  int bounces = -1;                     // as TraceOptions
+  SparseTransport receiver_from_point;  // K_rg; without rows where they are traced in parts
+  std::shared_ptr<const NearestGatherPoint> nearest;
+  int bounces = -1;  // as TraceOptions
   std::size_t ray_count = 0;
 };
 
@@ -39,11 +43,25 @@ struct GatherOptions {
   std::uint64_t seed = 0;
 };
 
+// All but K_rg.
+GatherOperator make_gather_points(const renderer::RayTracer& tracer, std::span<const renderer::SurfaceSample> receivers,
+                                  const GatherOptions& options, const renderer::Control& control = {});
+
+// Rows of K_rg: those of `receivers`, whose numbers among all begin with first_receiver.
+SparseTransport trace_receiver_rows(const renderer::RayTracer& tracer, const GatherOperator& gather,
+                                    std::span<const renderer::SurfaceSample> receivers, std::size_t first_receiver,
+                                    const GatherOptions& options, const renderer::Control& control = {});
+
 GatherOperator make_gather_operator(const renderer::RayTracer& tracer,
                                     std::span<const renderer::SurfaceSample> receivers, const GatherOptions& options,
                                     const renderer::Control& control = {});
 
-// Indirect illumination of all receivers under up to kLightBlock unity lights (1 cd per channel).
+// Illumination of the gather points over all bounces, D + K_gg D + K_gg² D + …, under up to kLightBlock unity lights (1
+// cd per channel).
+std::vector<LightBlock> illumination_of_gather_points(const renderer::RayTracer& tracer, const GatherOperator& gather,
+                                                      std::span<const renderer::Vec3f> lights);
+
+// Indirect illumination of all receivers under up to kLightBlock unity lights.
 std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const renderer::Vec3f> lights);
 

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 
 #include "inverse/transport/number_ranges.h"
+#include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
 
@@ -15,19 +18,11 @@ namespace {
 
 using renderer::Attributes;
 using renderer::Error;
-using renderer::Image;
 
 constexpr int kFormatVersion = 1;
-constexpr float kLargestStored = 1024;  // keeps halves far from their limits
 const char* const kNotACache = "a transport cache made by `chiaro bake`";
-const std::vector<std::string> kChannels{"visibility", "indirect.R", "indirect.G", "indirect.B"};
-
-// A power of two, so that scaling loses nothing: indirect × scale is at most about kLargestStored.
-float indirect_scale(const TransportCache& cache) {
-  float largest = 0;
-  for (const Vec3f& v : cache.indirect) largest = std::max(largest, max_component(v));
-  return largest > 0 ? std::exp2(std::floor(std::log2(kLargestStored / largest))) : 1.0F;
-}
+// As OpenEXR orders them.
+const std::vector<std::string> kChannels{"indirect.B", "indirect.G", "indirect.R", "visibility"};
 
 std::array<float, 3> array_of(Vec3f v) { return {v.x, v.y, v.z}; }
 
@@ -39,13 +34,13 @@ std::vector<int> nodes_of_lights(const LightGrid& grid) {
   return nodes;
 }
 
-Attributes header_of(const TransportCache& cache, float scale) {
+Attributes header_of(const TransportCache& cache) {
   const LightGrid& grid = cache.grid;
   return {{"chiaro:kind", std::string("transport cache")},
           {"chiaro:format_version", kFormatVersion},
           {"chiaro:units",
            std::string("indirect / indirect_scale: illumination in cd/m^2 per candela; visibility: 0 or 1")},
-          {"chiaro:indirect_scale", scale},
+          {"chiaro:indirect_scale", cache.indirect_scale},
           {"chiaro:region_min", array_of(grid.region.min)},
           {"chiaro:region_max", array_of(grid.region.max)},
           {"chiaro:grid_origin", array_of(grid.origin)},
@@ -144,8 +139,9 @@ LightGrid read_grid(const Header& header, const std::string& file) {
   return grid;
 }
 
-TransportCache read_header(const renderer::ImageFile& file, const std::string& name) {
-  const Header header(file.attributes, name);
+// `receivers`, `lights`: as the picture's size has them.
+TransportCache read_header(const Attributes& attributes, int receivers, int lights, const std::string& name) {
+  const Header header(attributes, name);
   if (header.get<std::string>("kind") != "transport cache")
     throw Error({name, "header", "not a transport cache", kNotACache});
   if (const int version = header.get<int>("format_version"); version != kFormatVersion) {
@@ -154,7 +150,7 @@ TransportCache read_header(const renderer::ImageFile& file, const std::string& n
   }
   TransportCache cache;
   cache.grid = read_grid(header, name);
-  cache.receiver_count = std::size_t(file.image.width);
+  cache.receiver_count = std::size_t(receivers);
   cache.scene_fingerprint = header.get<std::string>("scene_fingerprint");
   cache.receiver_fingerprint = header.get<std::string>("receiver_fingerprint");
   cache.settings.samples = header.get<int>("samples");
@@ -162,64 +158,255 @@ TransportCache read_header(const renderer::ImageFile& file, const std::string& n
   cache.settings.seed = header.parse<std::uint64_t>(header.get<std::string>("seed"), "seed");
   cache.settings.materials = header.get<std::string>("materials");
   cache.indirect_relative_error = double(header.get<float>("indirect_relative_error"));
-  if (std::size_t(file.image.height) != cache.grid.positions.size()) {
-    throw Error(
-        {name, "", fmt::format("{} rows for {} lights", file.image.height, cache.grid.positions.size()), kNotACache});
+  cache.indirect_scale = header.get<float>("indirect_scale");
+  if (!(cache.indirect_scale > 0) || !std::isfinite(cache.indirect_scale))
+    throw Error({name, "header", "chiaro:indirect_scale is not positive", kNotACache});
+  if (std::size_t(lights) != cache.grid.positions.size()) {
+    throw Error({name, "", fmt::format("{} rows for {} lights", lights, cache.grid.positions.size()), kNotACache});
   }
   return cache;
 }
 
-std::array<int, 4> find_channels(const Image& image, const std::string& name) {
+std::array<int, 4> find_channels(const std::vector<std::string>& names, const std::string& file) {
   std::array<int, 4> channels{};
   for (int c = 0; c < 4; ++c) {
-    channels[c] = image.find_channel(kChannels[c]);
-    if (channels[c] < 0) throw Error({name, "", "no channel " + kChannels[c], kNotACache});
+    const auto found = std::find(names.begin(), names.end(), kChannels[c]);
+    if (found == names.end()) throw Error({file, "", "no channel " + kChannels[c], kNotACache});
+    channels[c] = int(found - names.begin());
   }
   return channels;
 }
 
+struct Entry {
+  std::uint8_t visibility;
+  Vec3f indirect;
+};
+
+Entry entry_of(const float* pixel, const std::array<int, 4>& channels, float scale) {
+  return {std::uint8_t(pixel[channels[3]] > 0.5F ? 1 : 0),
+          Vec3f{pixel[channels[2]], pixel[channels[1]], pixel[channels[0]]} / scale};
+}
+
+renderer::ExrTiles shape_of(const TransportCache& cache, std::size_t first, std::size_t last) {
+  return {.width = int(cache.receiver_count),
+          .height = int(cache.grid.positions.size()),
+          .first_column = int(first),
+          .last_column = int(last),
+          .tile_width = int(TransportCacheWriter::receivers_of_tile(cache.grid.positions.size())),
+          .tile_height = int(TransportCacheWriter::kLights),
+          .channels = kChannels};
+}
+
+void require_finite(const TransportBlock& block, const std::string& file) {
+  for (std::size_t i = 0; i < block.indirect.size(); ++i) {
+    if (is_finite(block.indirect[i])) continue;
+    throw Error({file,
+                 fmt::format("light {}, receiver {}", block.first_light + i / block.receiver_count,
+                             block.first_receiver + i % block.receiver_count),
+                 "not a finite value", kNotACache});
+  }
+}
+
+// Receivers that are read at once, and where in the list those begin that are wanted of them.
+struct Run {
+  std::size_t first, last;
+  std::size_t column, wanted;
+};
+
+// Ascending receivers in whole tiles.
+std::vector<Run> runs_of(std::span<const std::size_t> receivers, std::size_t tile, std::size_t all) {
+  constexpr std::size_t kMost = 256;
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const std::size_t first = receivers[i] / tile * tile, last = std::min(first + tile, all);
+    if (!runs.empty() && first <= runs.back().last && last - runs.back().first <= kMost) {
+      runs.back().last = last;
+      ++runs.back().wanted;
+    } else {
+      runs.push_back({first, last, i, 1});
+    }
+  }
+  return runs;
+}
+
+void read_tiles(TransportCacheReader& reader, std::span<const std::size_t> receivers, const std::string& name,
+                TransportCache& cache) {
+  TransportBlock block;
+  block.light_count = cache.grid.positions.size();
+  for (const Run& run : runs_of(receivers, reader.receivers_of_tile(), reader.last_receiver())) {
+    block.first_receiver = run.first, block.receiver_count = run.last - run.first;
+    if (!reader.read(block)) {
+      throw Error({name, fmt::format("receiver {}", run.first), "cut short or damaged", "a whole file"});
+    }
+    require_finite(block, name);
+    for (std::size_t k = run.column; k < run.column + run.wanted; ++k) {
+      for (std::size_t light = 0; light < block.light_count; ++light) {
+        const std::size_t from = light * block.receiver_count + receivers[k] - run.first;
+        cache.visibility[light * cache.receiver_count + k] = block.visibility[from];
+        cache.indirect[light * cache.receiver_count + k] = block.indirect[from];
+      }
+    }
+  }
+}
+
+void read_scanlines(const std::filesystem::path& path, std::span<const std::size_t> receivers, TransportCache& cache) {
+  const renderer::ImageFile file = renderer::load_image(path);
+  const std::array<int, 4> channels = find_channels(file.image.channel_names, path.string());
+  for (std::size_t light = 0; light < cache.grid.positions.size(); ++light) {
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+      const Entry entry = entry_of(file.image.at(int(receivers[i]), int(light)), channels, cache.indirect_scale);
+      if (!is_finite(entry.indirect)) {
+        throw Error({path.string(), fmt::format("light {}, receiver {}", light, receivers[i]), "not a finite value",
+                     kNotACache});
+      }
+      cache.visibility[light * receivers.size() + i] = entry.visibility;
+      cache.indirect[light * receivers.size() + i] = entry.indirect;
+    }
+  }
+}
+
+// All receivers, to the last tile: it is the last that is written.
+void require_whole(TransportCacheReader& reader, const std::string& name) {
+  const std::size_t lights = reader.header().grid.positions.size();
+  TransportBlock last;
+  last.first_light = (lights - 1) / reader.lights_of_tile() * reader.lights_of_tile();
+  last.light_count = lights - last.first_light;
+  last.first_receiver = (reader.last_receiver() - 1) / reader.receivers_of_tile() * reader.receivers_of_tile();
+  last.receiver_count = reader.last_receiver() - last.first_receiver;
+  if (!reader.read(last)) throw Error({name, "", "cut short or damaged", "a whole file"});
+  if (reader.first_receiver() == 0 && reader.last_receiver() == reader.header().receiver_count) return;
+  throw Error({name, "header",
+               fmt::format("a part of a cache: receivers {} to {} of {}", reader.first_receiver(),
+                           reader.last_receiver() - 1, reader.header().receiver_count),
+               "a whole one: join the parts with `chiaro merge`"});
+}
+
 }  // namespace
 
-void save_transport_cache(const TransportCache& cache, const std::filesystem::path& path) {
-  Image image = renderer::make_image(int(cache.receiver_count), int(cache.grid.positions.size()), kChannels);
-  const float scale = indirect_scale(cache);
-  for (std::size_t i = 0; i < cache.visibility.size(); ++i) {
-    float* pixel = &image.pixels[4 * i];
-    pixel[0] = cache.visibility[i] != 0 ? 1.0F : 0.0F;
-    for (int c = 0; c < 3; ++c) pixel[c + 1] = scale * cache.indirect[i][c];
+float indirect_scale_for(const Box3f& bounds) {
+  // Light that went round a scene of diagonal d brings about 1 / d². Halves lose precision below 1/250 of that as it is
+  // stored, and end beyond four million times as much, which is next to a surface that a light all but touches.
+  constexpr float kTypical = 1.0F / 64;
+  const float d = bounds.diagonal();
+  return d > 0 ? std::exp2(std::floor(std::log2(kTypical * d * d))) : 1.0F;
+}
+
+void TransportBlock::resize() {
+  visibility.assign(light_count * receiver_count, 0);
+  indirect.assign(light_count * receiver_count, Vec3f{});
+}
+
+void put_into(TransportCache& cache, std::size_t column, const TransportBlock& block) {
+  for (std::size_t l = 0; l < block.light_count; ++l) {
+    const std::size_t from = l * block.receiver_count, to = (block.first_light + l) * cache.receiver_count + column;
+    std::copy_n(&block.visibility[from], block.receiver_count, &cache.visibility[to]);
+    std::copy_n(&block.indirect[from], block.receiver_count, &cache.indirect[to]);
   }
-  save_image(image, path, renderer::PixelType::kHalf, header_of(cache, scale));
+}
+
+std::size_t TransportCacheWriter::receivers_of_tile(std::size_t lights) {
+  return std::bit_floor(std::clamp(kLights / std::max<std::size_t>(1, lights), std::size_t{1}, kMostReceivers));
+}
+
+TransportCacheWriter::TransportCacheWriter(const std::filesystem::path& path, const TransportCache& header,
+                                           std::size_t first_receiver, std::size_t last_receiver)
+    : scale_(header.indirect_scale), file_(path, shape_of(header, first_receiver, last_receiver), header_of(header)) {}
+
+void TransportCacheWriter::write(const TransportBlock& block) {
+  std::vector<float> pixels(4 * block.visibility.size());
+  for (std::size_t i = 0; i < block.visibility.size(); ++i) {
+    const Vec3f stored = scale_ * block.indirect[i];
+    const float pixel[4] = {stored.z, stored.y, stored.x, block.visibility[i] != 0 ? 1.0F : 0.0F};
+    std::copy_n(pixel, 4, &pixels[4 * i]);
+  }
+  file_.write(int(block.first_light / kLights), int(block.first_receiver),
+              int(block.first_receiver + block.receiver_count), pixels);
+}
+
+void TransportCacheWriter::close() { file_.close(); }
+
+TransportCacheReader::TransportCacheReader(const std::filesystem::path& path)
+    : file_(path), header_(read_header(file_.attributes(), file_.shape().width, file_.shape().height, path.string())) {
+  const renderer::ExrTiles& shape = file_.shape();
+  find_channels(shape.channels, path.string());
+  if (shape.first_column % shape.tile_width != 0) {
+    throw Error({path.string(), "header", "begins within a tile", kNotACache});
+  }
+}
+
+bool TransportCacheReader::is_of(const TransportCache& header) const {
+  const Attributes expected = header_of(header);
+  const Attributes& found = file_.attributes();
+  return std::all_of(expected.begin(), expected.end(), [&](const auto& attribute) {
+    return std::find(found.begin(), found.end(), attribute) != found.end();
+  });
+}
+
+bool TransportCacheReader::read(TransportBlock& block) {
+  const renderer::ExrTiles& shape = file_.shape();
+  CHIARO_CHECK(block.first_light % std::size_t(shape.tile_height) == 0);
+  block.resize();
+  const std::array<int, 4> channels = find_channels(shape.channels, "");
+  const std::size_t tile_height = std::size_t(shape.tile_height), width = shape.channels.size();
+  const std::size_t row = block.first_light / tile_height;
+  const std::size_t rows = (block.light_count + tile_height - 1) / tile_height;
+  std::vector<float> pixels(width * block.visibility.size());
+  if (!file_.read(int(row), int(row + rows), int(block.first_receiver),
+                  int(block.first_receiver + block.receiver_count), pixels)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < block.visibility.size(); ++i) {
+    const Entry entry = entry_of(&pixels[width * i], channels, header_.indirect_scale);
+    block.visibility[i] = entry.visibility, block.indirect[i] = entry.indirect;
+  }
+  return true;
+}
+
+void save_transport_cache(const TransportCache& cache, const std::filesystem::path& path) {
+  renderer::write_atomically(path, [&](const std::filesystem::path& aside) {
+    TransportCacheWriter writer(aside, cache, 0, cache.receiver_count);
+    const std::size_t lights = cache.grid.positions.size();
+    for (std::size_t first = 0; first < lights; first += TransportCacheWriter::kLights) {
+      TransportBlock block{first, std::min(lights - first, TransportCacheWriter::kLights), 0, cache.receiver_count, {},
+                           {}};
+      const auto from = std::ptrdiff_t(first * cache.receiver_count);
+      const auto to = from + std::ptrdiff_t(block.light_count * cache.receiver_count);
+      block.visibility.assign(cache.visibility.begin() + from, cache.visibility.begin() + to);
+      block.indirect.assign(cache.indirect.begin() + from, cache.indirect.begin() + to);
+      writer.write(block);
+    }
+    writer.close();
+  });
 }
 
 TransportCache load_transport_cache_header(const std::filesystem::path& path) {
-  return read_header(renderer::load_image_header(path), path.string());
+  if (renderer::ExrTileReader::is_tiled(path)) {
+    TransportCacheReader reader(path);
+    require_whole(reader, path.string());
+    return reader.header();
+  }
+  const renderer::ImageFile file = renderer::load_image_header(path);
+  return read_header(file.attributes, file.image.width, file.image.height, path.string());
 }
 
 TransportCache load_transport_cache(const std::filesystem::path& path,
                                     std::optional<std::span<const std::size_t>> receivers) {
-  const renderer::ImageFile file = renderer::load_image(path);
-  const std::string name = path.string();
-  TransportCache cache = read_header(file, name);
-  const std::array<int, 4> channels = find_channels(file.image, name);
-  const float scale = Header(file.attributes, name).get<float>("indirect_scale");
-  if (!(scale > 0) || !std::isfinite(scale))
-    throw Error({name, "header", "chiaro:indirect_scale is not positive", kNotACache});
-  const std::size_t lights = cache.grid.positions.size();
-  const std::size_t columns = receivers ? receivers->size() : cache.receiver_count;
-  cache.visibility.resize(lights * columns);
-  cache.indirect.resize(lights * columns);
-  for (std::size_t light = 0; light < lights; ++light) {
-    for (std::size_t i = 0; i < columns; ++i) {
-      const std::size_t receiver = receivers ? (*receivers)[i] : i;
-      const float* pixel = file.image.at(int(receiver), int(light));
-      const Vec3f indirect = Vec3f{pixel[channels[1]], pixel[channels[2]], pixel[channels[3]]} / scale;
-      if (!is_finite(indirect))
-        throw Error({name, fmt::format("light {}, receiver {}", light, receiver), "not a finite value", kNotACache});
-      cache.visibility[light * columns + i] = pixel[channels[0]] > 0.5F ? 1 : 0;
-      cache.indirect[light * columns + i] = indirect;
-    }
+  TransportCache cache = load_transport_cache_header(path);
+  std::vector<std::size_t> all;
+  if (!receivers) {
+    all.resize(cache.receiver_count);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    receivers = all;
   }
-  cache.receiver_count = columns;
+  cache.receiver_count = receivers->size();
+  cache.visibility.resize(cache.grid.positions.size() * receivers->size());
+  cache.indirect.resize(cache.visibility.size());
+  if (renderer::ExrTileReader::is_tiled(path)) {
+    TransportCacheReader reader(path);
+    read_tiles(reader, *receivers, path.string(), cache);
+  } else {
+    read_scanlines(path, *receivers, cache);
+  }
   return cache;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "inverse/transport/light_grid.h"
+#include "renderer/image/exr_tiles.h"
 #include "renderer/scene/material_override.h"
 
 namespace chiaro::inverse {
@@ -30,10 +31,68 @@ struct TransportCache {
   std::string scene_fingerprint, receiver_fingerprint;
   BakeSettings settings;
   double indirect_relative_error = 0;  // measured against the path tracer on a sample of entries
+  float indirect_scale = 1;            // files hold the indirect part times this, so that halves do
 };
 
-// An OpenEXR file: width = receivers, height = lights; half channels `visibility`, `indirect.R/.G/.B`; the rest in the
-// header.
+// A power of two by which what lights bring in a scene of this size fits into halves.
+float indirect_scale_for(const Box3f& scene_bounds);
+
+// The entries of some receivers under some lights, row-major by light.
+struct TransportBlock {
+  std::size_t first_light = 0, light_count = 0, first_receiver = 0, receiver_count = 0;
+  std::vector<std::uint8_t> visibility;
+  std::vector<Vec3f> indirect;
+
+  void resize();  // to its counts, zero
+};
+
+// Copies the block into a cache whose receiver `column` is the block's first.
+void put_into(TransportCache& cache, std::size_t column, const TransportBlock& block);
+
+// An OpenEXR file of tiles: width = receivers, height = lights; half channels `visibility`, `indirect.R/.G/.B`; the
+// rest in the header. docs/caches.md has all of it.
+class TransportCacheWriter {
+ public:
+  static constexpr std::size_t kLights = 1024;  // of a tile
+  // A tile has one receiver, so that a solve reads no others; several where lights are few, as tiny tiles take more
+  // room.
+  static constexpr std::size_t kMostReceivers = 64;
+  static std::size_t receivers_of_tile(std::size_t lights);
+
+  // `header`: all but the entries. Receivers [first, last) will be written, where both are of whole tiles; others are
+  // in files of their own.
+  TransportCacheWriter(const std::filesystem::path& path, const TransportCache& header, std::size_t first_receiver,
+                       std::size_t last_receiver);
+  // Whole tiles, of lights that share one: in the order of lights, then of receivers.
+  void write(const TransportBlock& block);
+  void close();
+
+ private:
+  float scale_;
+  renderer::ExrTileWriter file_;
+};
+
+// What a file has of a cache. Reads files that were not finished, as far as they go.
+class TransportCacheReader {
+ public:
+  // Error where it is not a cache of this version, in tiles.
+  explicit TransportCacheReader(const std::filesystem::path& path);
+  const TransportCache& header() const { return header_; }  // all but the entries
+  std::size_t first_receiver() const { return std::size_t(file_.shape().first_column); }
+  std::size_t last_receiver() const { return std::size_t(file_.shape().last_column); }
+  std::size_t lights_of_tile() const { return std::size_t(file_.shape().tile_height); }
+  std::size_t receivers_of_tile() const { return std::size_t(file_.shape().tile_width); }
+  const std::filesystem::path& path() const { return file_.path(); }
+  bool of_one_bake(const TransportCacheReader& other) const { return file_.attributes() == other.file_.attributes(); }
+  bool is_of(const TransportCache& header) const;
+  // Fills the block, of whole tiles; false where any is missing or damaged.
+  bool read(TransportBlock& block);
+
+ private:
+  renderer::ExrTileReader file_;
+  TransportCache header_;
+};
+
 void save_transport_cache(const TransportCache& cache, const std::filesystem::path& path);
 
 // Everything but the entries.

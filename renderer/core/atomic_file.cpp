@@ -28,11 +28,23 @@ void sync(const std::filesystem::path& path, const std::filesystem::path& named)
   if (result != 0 && code != EINVAL) fail(named, code);
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
 }  // namespace
+
+void move_into_place(const std::filesystem::path& aside, const std::filesystem::path& path) {
+  sync(aside, path);
+  std::error_code renamed;
+  std::filesystem::rename(aside, path, renamed);
+  if (renamed) fail(path, renamed.value());
+  sync(folder_of(path), path);
+}
 
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const std::filesystem::path folder = folder_of(path);
   if (!std::filesystem::is_directory(folder)) {
     throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
   }
@@ -41,16 +53,12 @@ void write_atomically(const std::filesystem::path& path,
       folder / fmt::format(".{}.{}.part{}", path.stem().string(), ::getpid(), path.extension().string());
   try {
     write(aside);
-    sync(aside, path);
-    std::error_code renamed;
-    std::filesystem::rename(aside, path, renamed);
-    if (renamed) fail(path, renamed.value());
+    move_into_place(aside, path);
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(aside, ignored);
     throw;
   }
-  sync(folder, path);
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {

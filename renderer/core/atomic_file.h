@@ -13,7 +13,10 @@ namespace chiaro::renderer {
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-// The same for bytes in memory.
+// Syncs a file that was written aside, in the folder of `path`, and renames it to `path`.
+void move_into_place(const std::filesystem::path& aside, const std::filesystem::path& path);
+
+// As write_atomically, for bytes in memory.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 // The bytes of a file; Error where it is missing, a folder, or unreadable.

@@ -27,7 +27,9 @@ class Error : public std::runtime_error {
 // Thrown where a stage was asked to stop (Control::interrupted).
 class Interruption : public std::runtime_error {
  public:
-  Interruption() : std::runtime_error("interrupted") {}
+  // What is left of the work, if anything.
+  explicit Interruption(const std::string& left = "")
+      : std::runtime_error(left.empty() ? "interrupted" : "interrupted: " + left) {}
 };
 
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);

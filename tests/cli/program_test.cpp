@@ -49,7 +49,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Arguments{"render", "a.glb", "-o", "a.exr", "--samples"},
                     Arguments{"bake", "a.glb", "-o", "a.exr", "--grid", "0,0,0"},
                     Arguments{"bake", "a.glb", "-o", "a.exr", "--bounces", "-1"},
-                    Arguments{"bake", "a.glb", "-o", "a.exr", "--albedo", "2"},
+                    Arguments{"bake", "a.glb", "-o", "a.exr", "--shard", "0/4"},
+                    Arguments{"bake", "a.glb", "-o", "a.exr", "--shard", "5/4"},
+                    Arguments{"bake", "a.glb", "-o", "a.exr", "--shard", "2"},
+                    Arguments{"bake", "a.glb", "-o", "a.exr", "--memory", "4X"},
+                    Arguments{"bake", "a.glb", "-o", "a.exr", "--memory", "0G"}, Arguments{"merge", "-o", "a.exr"},
+                    Arguments{"merge", "part.exr"}, Arguments{"bake", "a.glb", "-o", "a.exr", "--albedo", "2"},
                     Arguments{"bake", "a.glb", "-o", "a.exr", "--materials", "gold"},
                     Arguments{"bake", "a.glb", "-o", "a.exr", "--on", "r.glb", "--max-edge", "1"},
                     Arguments{"receivers", "a.glb", "-o", "r.glb", "--max-edge", "0"},
@@ -76,7 +81,7 @@ TEST(CliProgram, AMissingFileIsOneLineOfError) {
 
 TEST(CliProgram, HelpOfEveryCommandHasAnExample) {
   for (const char* command :
-       {"inspect", "receivers", "illuminate", "paint", "bake", "solve", "render", "compare", "run"}) {
+       {"inspect", "receivers", "illuminate", "paint", "bake", "merge", "solve", "render", "compare", "run"}) {
     const Outcome outcome = run_with({command, "--help"});
     EXPECT_EQ(outcome.exit_code, kDone) << command;
     EXPECT_NE(outcome.standard_output.find("Example:\n  chiaro " + std::string(command)), std::string::npos) << command;

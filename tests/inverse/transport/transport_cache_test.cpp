@@ -46,6 +46,7 @@ TransportCache make_cache(float largest) {
   cache.receiver_fingerprint = "fedcba9876543210";
   cache.settings = {.samples = 77, .bounces = 3, .seed = 0xfedcba9876543210ULL, .materials = "albedo 0.5,0.5,0.25"};
   cache.indirect_relative_error = 0.0123;
+  cache.indirect_scale = std::exp2(std::floor(std::log2(1000 / largest)));
   return cache;
 }
 
@@ -135,6 +136,17 @@ TEST_F(TransportCacheFile, ReadsTheColumnsAskedFor) {
       EXPECT_EQ(some.indirect[light * 4 + i], all.indirect[light * 37 + chosen[i]]);
       EXPECT_EQ(some.visibility[light * 4 + i], all.visibility[light * 37 + chosen[i]]);
     }
+  }
+}
+
+TEST_F(TransportCacheFile, ReadsScanlineFilesOfOthers) {
+  save_edited([](renderer::ImageFile&) {});  // as any program writes them
+  ASSERT_FALSE(renderer::ExrTileReader::is_tiled(path()));
+  const TransportCache read = load_transport_cache(path()), expected = make_cache(1);
+  EXPECT_EQ(read.visibility, expected.visibility);
+  for (std::size_t i = 0; i < expected.indirect.size(); ++i) {
+    EXPECT_NEAR(read.indirect[i].x, expected.indirect[i].x, expected.indirect[i].x / 2000 + 1e-9F);
+    EXPECT_NEAR(read.indirect[i].z, expected.indirect[i].z, expected.indirect[i].z / 2000 + 1e-9F);
   }
 }
 

@@ -1,0 +1,126 @@
+#include "inverse/transport/bake_file.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "tests/support/code_scenes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chiaro::inverse {
+namespace {
+
+namespace fs = std::filesystem;
+using renderer::Error;
+using renderer::read_file;
+
+constexpr double kAllMemory = std::numeric_limits<double>::infinity();
+
+class BakeFile : public ::testing::Test {
+ protected:
+  BakeFile() { bake_as({}, "whole.exr"); }
+
+  fs::path bake_as(const BakeFileOptions& options, const std::string& name, double memory = kAllMemory,
+                   const renderer::Control& control = {}) const {
+    Baker baker(tracer_, receivers_, grid_, settings_, memory);
+    bake_to_file(baker, folder_ / name, options, control);
+    return folder_ / name;
+  }
+  std::string whole() const { return read_file(folder_ / "whole.exr"); }
+
+  const renderer::Scene scene_ = test::corner_with_ball();
+  const renderer::RayTracer tracer_{scene_};
+  const Receivers receivers_ = make_receivers(scene_, {.max_edge = 0.8F});
+  // More lights than a row of tiles has.
+  const LightGrid grid_ = make_light_grid(tracer_, {.counts = {12, 11, 10}, .region = {}});
+  BakeSettings settings_{.samples = 2, .bounces = 2, .seed = 5, .materials = "gltf"};
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(BakeFile, IsWhatABakeInMemoryGives) {
+  ASSERT_GT(grid_.positions.size(), TransportCacheWriter::kLights);
+  const TransportCache read = load_transport_cache(folder_ / "whole.exr");
+  const TransportCache expected = bake(tracer_, receivers_, grid_, settings_).cache;
+  EXPECT_EQ(read.visibility, expected.visibility);
+  ASSERT_EQ(read.indirect.size(), expected.indirect.size());
+  for (std::size_t i = 0; i < read.indirect.size(); ++i) {
+    ASSERT_NEAR(read.indirect[i].y, expected.indirect[i].y, 6e-4F * expected.indirect[i].y + 1e-6F) << i;
+  }
+  EXPECT_FALSE(fs::exists(unfinished_bake(folder_ / "whole.exr")));
+}
+
+TEST_F(BakeFile, IsTheSameInAsLittleMemoryAsItTakes) {
+  EXPECT_EQ(read_file(bake_as({}, "small.exr", 17e6)), whole());
+  EXPECT_THROW(bake_as({}, "smaller.exr", 1e6), Error);
+  EXPECT_FALSE(fs::exists(folder_ / "smaller.exr"));
+}
+
+TEST_F(BakeFile, GoesOnFromWhereverItWasCut) {
+  const std::string bytes = whole();
+  for (const double part : {0.0, 0.005, 0.03, 0.2, 0.5, 0.77, 0.999}) {
+    const fs::path file = folder_ / "resumed.exr";
+    std::ofstream(unfinished_bake(file), std::ios::binary) << bytes.substr(0, std::size_t(part * double(bytes.size())));
+    bake_as({.shard = {}, .resume = true}, "resumed.exr");
+    EXPECT_EQ(read_file(file), bytes) << part;
+    EXPECT_FALSE(fs::exists(unfinished_bake(file)));
+  }
+}
+
+TEST_F(BakeFile, KeepsWhatIsDoneWhenInterrupted) {
+  std::atomic<bool> interrupted{false};
+  renderer::Control control;
+  control.interrupted = &interrupted;
+  control.report = [&](std::string_view, double fraction) { interrupted = interrupted || fraction > 0.3; };
+  EXPECT_THROW(bake_as({}, "stopped.exr", 17e6, control), renderer::Interruption);
+  EXPECT_FALSE(fs::exists(folder_ / "stopped.exr"));
+  ASSERT_TRUE(fs::exists(unfinished_bake(folder_ / "stopped.exr")));
+  double first = 1;
+  control.report = [&](std::string_view, double fraction) { first = std::min(first, fraction); };
+  interrupted = false;
+  EXPECT_EQ(read_file(bake_as({.shard = {}, .resume = true}, "stopped.exr", 17e6, control)), whole());
+  EXPECT_GT(first, 0.3);
+}
+
+TEST_F(BakeFile, DoesNotGoOnWithAnother) {
+  fs::copy(folder_ / "whole.exr", unfinished_bake(folder_ / "other.exr"));
+  settings_.seed = 6;
+  EXPECT_THROW(bake_as({.shard = {}, .resume = true}, "other.exr"), Error);
+  EXPECT_FALSE(fs::exists(folder_ / "other.exr"));
+  EXPECT_NO_THROW(bake_as({}, "other.exr"));
+}
+
+TEST_F(BakeFile, PartsMakeTheWhole) {
+  std::vector<fs::path> parts;
+  for (const std::size_t i : {2, 0, 3, 1}) {
+    parts.push_back(bake_as({.shard = {i, 4}, .resume = false}, "part" + std::to_string(i) + ".exr"));
+  }
+  merge_transport_caches(parts, folder_ / "merged.exr", {});
+  EXPECT_EQ(read_file(folder_ / "merged.exr"), whole());
+  EXPECT_THROW(load_transport_cache(parts[0]), Error);
+  EXPECT_THROW(bake_as({.shard = {0, 1'000'000}, .resume = false}, "none.exr"), Error);
+}
+
+TEST_F(BakeFile, PartsThatDoNotFitAreRefused) {
+  const auto part = [&](std::size_t i, const std::string& name) {
+    return bake_as({.shard = {i, 2}, .resume = false}, name);
+  };
+  const fs::path first = part(0, "0.exr"), second = part(1, "1.exr"), merged = folder_ / "merged.exr";
+  const auto refused = [&](const std::vector<fs::path>& parts) {
+    EXPECT_THROW(merge_transport_caches(parts, merged, {}), Error);
+    EXPECT_FALSE(fs::exists(merged));
+  };
+  refused({first});
+  refused({second});
+  refused({first, second, second});
+  refused({first, folder_ / "whole.exr"});
+  refused({first, folder_ / "missing.exr"});
+  settings_.seed = 6;
+  refused({first, part(1, "other.exr")});
+  const std::string bytes = read_file(second);
+  refused({first, folder_.write("cut.exr", bytes.substr(0, bytes.size() / 2))});
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

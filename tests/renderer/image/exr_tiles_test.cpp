@@ -1,0 +1,114 @@
+#include "renderer/image/exr_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chiaro::renderer {
+namespace {
+
+const ExrTiles kShape{.width = 10,
+                      .height = 7,
+                      .first_column = 2,
+                      .last_column = 9,
+                      .tile_width = 2,
+                      .tile_height = 3,
+                      .channels = {"a", "b"}};
+const Attributes kAttributes{
+    {"x:count", 3}, {"x:scale", 0.5F}, {"x:name", std::string("some")}, {"x:at", std::array<float, 3>{1, 2, 3}}};
+
+float value(int x, int y, int channel) { return float(100 * y + x) + 0.5F * float(channel); }
+
+std::vector<float> pixels(int tile_row, int rows, int first, int last) {
+  std::vector<float> all;
+  for (int y = 3 * tile_row; y < 3 * tile_row + rows; ++y) {
+    for (int x = first; x < last; ++x) {
+      for (int c = 0; c < 2; ++c) all.push_back(value(x, y, c));
+    }
+  }
+  return all;
+}
+
+void write_whole(const std::filesystem::path& path) {
+  ExrTileWriter writer(path, kShape, kAttributes);
+  for (int row = 0; row < 3; ++row) {
+    for (const auto& [first, last] : {std::pair{2, 6}, {6, 9}}) {
+      writer.write(row, first, last, pixels(row, kShape.rows_of(row), first, last));
+    }
+  }
+  writer.close();
+}
+
+TEST(ExrTiles, ComeBackAsTheyWereWritten) {
+  const test::TemporaryFolder folder;
+  write_whole(folder / "t.exr");
+  EXPECT_TRUE(ExrTileReader::is_tiled(folder / "t.exr"));
+  ExrTileReader reader(folder / "t.exr");
+  EXPECT_EQ(reader.shape().width, 10);
+  EXPECT_EQ(reader.shape().height, 7);
+  EXPECT_EQ(reader.shape().first_column, 2);
+  EXPECT_EQ(reader.shape().last_column, 9);
+  EXPECT_EQ(reader.shape().channels, kShape.channels);
+  for (const auto& attribute : kAttributes) {
+    const Attributes& found = reader.attributes();
+    EXPECT_NE(std::find(found.begin(), found.end(), attribute), found.end()) << attribute.first;
+  }
+  std::vector<float> read(2 * 7 * 7);
+  ASSERT_TRUE(reader.read(0, 3, 2, 9, read));
+  EXPECT_EQ(read, pixels(0, 7, 2, 9));
+  read.resize(2 * 4 * 3);
+  ASSERT_TRUE(reader.read(1, 2, 4, 8, read));
+  EXPECT_EQ(read, pixels(1, 3, 4, 8));
+}
+
+TEST(ExrTiles, WhatHalvesCannotHoldIsClamped) {
+  const test::TemporaryFolder folder;
+  ExrTileWriter writer(folder / "t.exr", {.width = 2, .height = 1, .last_column = 2, .channels = {"a"}}, {});
+  writer.write(0, 0, 2, std::vector<float>{1e9F, -1e9F});
+  writer.close();
+  ExrTileReader reader(folder / "t.exr");
+  std::vector<float> read(2);
+  ASSERT_TRUE(reader.read(0, 1, 0, 2, read));
+  EXPECT_EQ(read, (std::vector<float>{65504, -65504}));
+}
+
+TEST(ExrTiles, FilesThatWereNotFinishedAreReadAsFarAsTheyGo) {
+  const test::TemporaryFolder folder;
+  {
+    ExrTileWriter writer(folder / "t.exr", kShape, kAttributes);
+    writer.write(0, 2, 9, pixels(0, 3, 2, 9));
+    writer.write(1, 2, 6, pixels(1, 3, 2, 6));
+  }  // what a kill leaves has no table of where its tiles are either: zeros
+  std::string bytes = read_file(folder / "t.exr");
+  ExrTileReader reader(folder / "t.exr");
+  std::vector<float> read(2 * 3 * 7);
+  ASSERT_TRUE(reader.read(0, 1, 2, 9, read));
+  EXPECT_EQ(read, pixels(0, 3, 2, 9));
+  EXPECT_FALSE(reader.read(1, 2, 2, 9, read));
+  read.resize(2 * 3 * 4);
+  EXPECT_TRUE(reader.read(1, 2, 2, 6, read));
+}
+
+TEST(ExrTiles, AFullDiskIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  EXPECT_THROW(
+      {
+        ExrTileWriter writer("/dev/full", kShape, kAttributes);
+        for (int row = 0; row < 3; ++row) writer.write(row, 2, 9, pixels(row, kShape.rows_of(row), 2, 9));
+        writer.close();
+      },
+      Error);
+}
+
+TEST(ExrTiles, OtherFilesAreRefused) {
+  const test::TemporaryFolder folder;
+  EXPECT_FALSE(ExrTileReader::is_tiled(folder.write("text.exr", "not an image")));
+  EXPECT_FALSE(ExrTileReader::is_tiled(folder / "missing.exr"));
+  EXPECT_THROW(ExrTileReader(folder / "text.exr"), Error);
+  EXPECT_THROW(ExrTileReader(folder / "missing.exr"), Error);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
