@@ -62,7 +62,7 @@ constexpr int kPathsPerGatherPoint = 8;
 constexpr float kNearField = 8.0F;  // cell radii
 constexpr int kRaysPerGatherPoint = 64;
 constexpr int kMostBounces = 400;
-constexpr double kNegligibleBounce = 1e-4;  // of the light so far
+constexpr double kNegligibleTail = 1e-4;  // error of what further bounces add, of the light so far
 
 struct GatherHit {
   SurfaceSample at;
@@ -215,7 +215,64 @@ std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const G
   return direct;
 }
 
-// term + K term + K² term + …, as many as there are bounces.
+// Per channel and light of a block.
+struct BlockSums {
+  double channel[3][kLightBlock] = {};
+};
+
+BlockSums inner_products(std::span<const LightBlock> a, std::span<const LightBlock> b) {
+  BlockSums sums;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      for (int l = 0; l < kLightBlock; ++l) {
+        sums.channel[c][l] += double(a[i].channel[c][l]) * double(b[i].channel[c][l]);
+      }
+    }
+  }
+  return sums;
+}
+
+// By which factor each bounce shrinks the light, once it does so everywhere alike.
+BlockSums decay_of(std::span<const LightBlock> before, std::span<const LightBlock> after) {
+  constexpr double kMost = 0.999;
+  BlockSums decay = inner_products(after, before);
+  const BlockSums squares = inner_products(before, before);
+  for (int c = 0; c < 3; ++c) {
+    for (int l = 0; l < kLightBlock; ++l) {
+      const double ratio = squares.channel[c][l] > 0 ? decay.channel[c][l] / squares.channel[c][l] : 0;
+      decay.channel[c][l] = std::clamp(ratio, 0.0, kMost);
+    }
+  }
+  return decay;
+}
+
+// The error of taking what follows `after` for a geometric series: that of its first term, carried on as it would be.
+double error_of_tail(std::span<const LightBlock> before, std::span<const LightBlock> after, const BlockSums& decay) {
+  double sum = 0;
+  const BlockSums aa = inner_products(after, after), ab = inner_products(after, before),
+                  bb = inner_products(before, before);
+  for (int c = 0; c < 3; ++c) {
+    for (int l = 0; l < kLightBlock; ++l) {
+      const double q = decay.channel[c][l], next = q / (1 - q);
+      sum += next * next * std::max(0.0, aa.channel[c][l] - 2 * q * ab.channel[c][l] + q * q * bb.channel[c][l]);
+    }
+  }
+  return std::sqrt(sum);
+}
+
+void add_tail(std::span<LightBlock> sum, std::span<const LightBlock> last, const BlockSums& decay) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      for (int l = 0; l < kLightBlock; ++l) {
+        const double q = decay.channel[c][l];
+        sum[i].channel[c][l] += float(q / (1 - q)) * last[i].channel[c][l];
+      }
+    }
+  }
+}
+
+// term + K term + K² term + …, as many as there are bounces. Where all are wanted, what follows once each bounce is the
+// one before but for a factor is a geometric series.
 std::vector<LightBlock> sum_of_bounces(const SparseTransport& point_from_point, std::vector<LightBlock> term,
                                        int bounces) {
   std::vector<LightBlock> sum = term, next(term.size());
@@ -224,7 +281,11 @@ std::vector<LightBlock> sum_of_bounces(const SparseTransport& point_from_point, 
     multiply(point_from_point, term, next);
     std::swap(term, next);
     add(sum, term);
-    if (bounces < 0 && squared_norm(term) <= kNegligibleBounce * kNegligibleBounce * squared_norm(sum)) break;
+    if (bounces >= 0) continue;
+    const BlockSums decay = decay_of(next, term);
+    if (error_of_tail(next, term, decay) > kNegligibleTail * std::sqrt(squared_norm(sum))) continue;
+    add_tail(sum, term, decay);
+    break;
   }
   return sum;
 }

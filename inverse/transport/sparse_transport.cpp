@@ -16,10 +16,15 @@ namespace {
 
 using renderer::Vec3f;
 
+constexpr std::size_t kAhead = 6;  // entries, of which the columns are fetched before they are needed
+
 CHIARO_DISPATCH void multiply_row(const SparseTransport::Entry* entry, const SparseTransport::Entry* end,
                                   const LightBlock* in, LightBlock* result) {
   LightBlock sum;
   for (; entry != end; ++entry) {
+    // Columns are all over the place; the rows after this one follow in memory.
+    const auto* ahead = reinterpret_cast<const char*>(&in[entry[kAhead].column]);
+    for (std::size_t line = 0; line < sizeof(LightBlock); line += 64) __builtin_prefetch(ahead + line);
     const LightBlock& x = in[entry->column];
     for (int l = 0; l < kLightBlock; ++l) sum.channel[0][l] += entry->weight.x * x.channel[0][l];
     for (int l = 0; l < kLightBlock; ++l) sum.channel[1][l] += entry->weight.y * x.channel[1][l];
@@ -45,6 +50,7 @@ SparseTransport SparseTransport::from_rows(std::vector<std::vector<Entry>>&& row
     matrix.row_start_.push_back(matrix.entries_.size());
     std::vector<Entry>().swap(row);
   }
+  matrix.entries_.resize(matrix.entries_.size() + kAhead);  // no entries, only read ahead
   return matrix;
 }
 

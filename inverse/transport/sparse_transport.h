@@ -28,11 +28,11 @@ class SparseTransport {
   std::span<const Entry> row(std::size_t i) const {
     return {entries_.data() + row_start_[i], entries_.data() + row_start_[i + 1]};
   }
-  std::size_t entry_count() const { return entries_.size(); }
+  std::size_t entry_count() const { return row_start_.back(); }
 
  private:
   std::vector<std::size_t> row_start_{0};
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  // and some beyond the last, so that products may read ahead
 };
 
 // Lights are handled this many at a time.
