@@ -17,6 +17,7 @@
 #include "inverse/transport/bake.h"
 #include "renderer/core/seconds_since.h"
 #include "renderer/io/load_gltf.h"
+#include "tests/benchmarks/thinned_receivers.h"
 
 namespace {
 
@@ -142,17 +143,6 @@ Noise noise_of(const Baked& a, const Baked& b, std::size_t lights) {
   std::sort(relative.begin(), relative.end());
   const auto sum = [](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
   return {std::sqrt(sum(difference) / sum(value)), relative[lights / 2], relative[lights * 9 / 10]};
-}
-
-Receivers thinned(const Receivers& all, std::size_t count) {
-  Receivers some;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = (2 * k + 1) * all.size() / (2 * count);
-    some.positions.push_back(all.positions[i]);
-    some.normals.push_back(all.normals[i]);
-    some.samples.push_back(all.samples[i]);
-  }
-  return some;
 }
 
 // Seconds that path tracing takes for the indirect light of one light to a relative standard error.

@@ -1,0 +1,131 @@
+// How far the interpolated response to a light off the grid is from the exact one, by visibility and indirect light
+// apart, and by whole columns as published; and how long the exact one takes.
+//   interpolation_benchmark SCENE.glb [X,Y,Z [POSITIONS [RECEIVERS]]]
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "inverse/transport/bake.h"
+#include "inverse/transport/light_response.h"
+#include "renderer/core/sampler.h"
+#include "renderer/core/seconds_since.h"
+#include "renderer/io/load_gltf.h"
+#include "tests/benchmarks/thinned_receivers.h"
+
+namespace {
+
+using namespace chiaro;
+using namespace chiaro::inverse;
+using renderer::Sampler;
+using renderer::seconds_since;
+
+struct Corner {
+  std::size_t light;
+  double weight;
+};
+
+// Trilinear; nodes that are left out lose their share to the others.
+std::vector<Corner> corners_around(const LightGrid& grid, Vec3f position) {
+  std::vector<Corner> corners;
+  double total = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    std::size_t node = 0, stride = 1;
+    for (int a = 0; a < 3; ++a) {
+      const int last = grid.counts[a] - 1;
+      const double at = std::clamp(double((position[a] - grid.origin[a]) / grid.spacing[a]), 0.0, double(last));
+      const int low = std::min(int(at), std::max(0, last - 1));
+      const bool high = (corner >> a & 1) != 0;
+      weight *= high ? at - low : 1 - (at - low);
+      node += stride * std::size_t(std::min(last, low + (high ? 1 : 0)));
+      stride *= std::size_t(grid.counts[a]);
+    }
+    if (weight <= 0 || grid.light_of_node[node] < 0) continue;
+    corners.push_back({std::size_t(grid.light_of_node[node]), weight});
+    total += weight;
+  }
+  for (Corner& c : corners) c.weight /= total;
+  return corners;
+}
+
+// Where a light may stand: its nearest node is not left out.
+std::vector<Vec3f> random_positions(const LightGrid& grid, std::size_t count) {
+  std::vector<Vec3f> positions;
+  for (std::uint32_t i = 0; positions.size() < count; ++i) {
+    Sampler sampler(1, 0, i);
+    const renderer::Vec2f xy = sampler.next_2d();
+    const Vec3f position = grid.region.min + grid.region.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
+    std::size_t node = 0, stride = 1;
+    for (int a = 0; a < 3; ++a) {
+      const int at = int(std::lround((position[a] - grid.origin[a]) / grid.spacing[a]));
+      node += stride * std::size_t(std::clamp(at, 0, grid.counts[a] - 1));
+      stride *= std::size_t(grid.counts[a]);
+    }
+    if (grid.light_of_node[node] >= 0) positions.push_back(position);
+  }
+  return positions;
+}
+
+void print_errors(const char* name, std::vector<double> errors) {
+  std::sort(errors.begin(), errors.end());
+  std::printf("%-34s median %6.2f %%, 95 %% below %6.2f %%\n", name, 100 * errors[errors.size() / 2],
+              100 * errors[errors.size() * 95 / 100]);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::puts("interpolation_benchmark SCENE.glb [X,Y,Z [POSITIONS [RECEIVERS]]]");
+    return 2;
+  }
+  const renderer::LoadedScene loaded = renderer::load_gltf(argv[1]);
+  const renderer::RayTracer tracer(loaded.scene);
+  LightGridOptions grid_options;
+  if (argc > 2) {
+    std::sscanf(argv[2], "%d,%d,%d", &grid_options.counts[0], &grid_options.counts[1], &grid_options.counts[2]);
+  }
+  const std::size_t count = argc > 3 ? std::size_t(std::atoi(argv[3])) : 1000;
+  const Receivers receivers =
+      thinned(make_receivers(loaded.scene, {}), argc > 4 ? std::size_t(std::atoi(argv[4])) : 1000);
+  const LightGrid grid = make_light_grid(tracer, grid_options);
+  const BakeSettings settings{.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"};
+  const TransportCache cache = bake(tracer, receivers, grid, settings).cache;
+  const LightResponse response(tracer, receivers.samples, cache);
+  const GatherOperator gather =
+      make_gather_operator(tracer, receivers.samples, {.samples = 256, .bounces = -1, .seed = 0});
+
+  std::vector<double> apart, indirect_apart, whole;
+  double direct_seconds = 0, indirect_seconds = 0;
+  for (const Vec3f position : random_positions(grid, count)) {
+    const Eigen::Vector3d at(position.x, position.y, position.z);
+    auto start = std::chrono::steady_clock::now();
+    Column exact = response.direct(at);
+    direct_seconds += seconds_since(start) / double(count);
+    start = std::chrono::steady_clock::now();
+    const auto blocks = indirect_illumination(tracer, gather, {&position, 1});
+    indirect_seconds += seconds_since(start) / double(count);
+    Column indirect(exact.rows(), 3);
+    for (Eigen::Index i = 0; i < exact.rows(); ++i) {
+      for (int c = 0; c < 3; ++c) indirect(i, c) = double(blocks[std::size_t(i)].channel[c][0]);
+    }
+    exact += indirect;
+    apart.push_back((response.evaluate(at, VisibilitySource::kInterpolated) - exact).norm() / exact.norm());
+    indirect_apart.push_back((response.interpolated_indirect(at) - indirect).norm() / exact.norm());
+    Column columns = Column::Zero(exact.rows(), 3);
+    for (const Corner& c : corners_around(grid, position)) columns += c.weight * response.grid_column(c.light);
+    whole.push_back((columns - exact).norm() / exact.norm());
+  }
+  std::printf("%zu lights, %d x %d x %d; %zu receivers, %zu positions\n", grid.positions.size(), grid.counts[0],
+              grid.counts[1], grid.counts[2], receivers.size(), count);
+  print_errors("visibility and indirect apart", apart);
+  print_errors("  of it by indirect light", indirect_apart);
+  print_errors("whole columns, as published", whole);
+  std::printf("exact: %.2f ms, direct %.2f and indirect %.2f\n", 1e3 * (direct_seconds + indirect_seconds),
+              1e3 * direct_seconds, 1e3 * indirect_seconds);
+  return 0;
+}
