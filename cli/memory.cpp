@@ -18,6 +18,9 @@ double resident_bytes() {
 
 double memory_bytes() { return double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)); }
 
-double memory_left(std::optional<double> limit) { return limit.value_or(0.75 * memory_bytes()) - resident_bytes(); }
+double memory_left(std::optional<double> limit) {
+  constexpr double kBesides = 100e6;  // threads, file buffers, and what the allocator does not give back
+  return limit.value_or(0.75 * memory_bytes()) - resident_bytes() - kBesides;
+}
 
 }  // namespace chiaro::cli

@@ -63,15 +63,14 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
       receivers_(receivers),
       header_(header_of(tracer, receivers, grid, settings)),
       options_{.samples = settings.samples, .bounces = settings.bounces, .seed = settings.seed} {
-  const double points = double(options_.samples) * options_.points_per_sample;
-  const double per_light = points * sizeof(LightBlock) / kLightBlock;
-  lights_at_once_ = round_down(memory / 2 / per_light, kLightBlock, kLightBlock, kBand);
-  receivers_at_once_ =
-      round_down(memory / 4 / (kBytesPerEntry * double(kBand)), kLeastReceivers, kLeastReceivers, kMostReceivers);
-  const double rows = double(receivers.size()) * options_.samples * sizeof(SparseTransport::Entry);
-  keeps_rows_ = rows <= memory / 4;
-  const double needed = 4 * std::max(kLightBlock * per_light, kBytesPerEntry * double(kBand * kLeastReceivers));
-  if (memory < needed) {
+  const double points = settings.bounces == 0 ? 0 : double(options_.samples) * options_.points_per_sample;
+  const double lights = points * double(std::min(kBand, grid.positions.size())) * sizeof(LightBlock) / kLightBlock;
+  const double per_receiver = kBytesPerEntry * double(kBand), rows = double(receivers.size()) * options_.samples;
+  const double left = (memory - lights) / 2;
+  receivers_at_once_ = round_down(left / per_receiver, kLeastReceivers, kLeastReceivers, kMostReceivers);
+  keeps_rows_ = rows * sizeof(SparseTransport::Entry) <= left;
+  if (left < per_receiver * kLeastReceivers) {
+    const double needed = lights + 2 * per_receiver * kLeastReceivers;
     throw renderer::Error({tracer.scene().path, "option --memory",
                            fmt::format("{:.0f} MB are left for the bake", std::max(0.0, memory) / 1e6),
                            fmt::format("{:.0f} MB or more, or fewer --samples", std::ceil(needed / 1e6))});
@@ -170,22 +169,20 @@ void Baker::fill_indirect(TransportBlock& block, const renderer::Control& contro
   if (gather_.points.empty()) return;
   const auto start = std::chrono::steady_clock::now();
   const SparseTransport& rows = rows_of(block.first_receiver, block.receiver_count, control);
-  for (std::size_t done = 0; done < block.light_count; done += lights_at_once_) {
-    choose_lights(block.first_light + done, std::min(lights_at_once_, block.light_count - done), control);
-    renderer::parallel_for(illumination_.size(), "", control, [&](std::size_t part) {
-      std::vector<LightBlock> columns(block.receiver_count);
-      multiply(rows, illumination_[part], columns);
-      const std::size_t first = done + part * kLightBlock;
-      const std::size_t count = std::min<std::size_t>(kLightBlock, done + chosen_ - first);
-      for (std::size_t l = 0; l < count; ++l) {
-        Vec3f* out = &block.indirect[(first + l) * block.receiver_count];
-        for (std::size_t i = 0; i < columns.size(); ++i) {
-          const auto& channel = columns[i].channel;
-          out[i] = {channel[0][l], channel[1][l], channel[2][l]};
-        }
+  choose_lights(block.first_light, block.light_count, control);
+  renderer::parallel_for(illumination_.size(), "", control, [&](std::size_t part) {
+    std::vector<LightBlock> columns(block.receiver_count);
+    multiply(rows, illumination_[part], columns);
+    const std::size_t first = part * kLightBlock;
+    const std::size_t count = std::min<std::size_t>(kLightBlock, block.light_count - first);
+    for (std::size_t l = 0; l < count; ++l) {
+      Vec3f* out = &block.indirect[(first + l) * block.receiver_count];
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto& channel = columns[i].channel;
+        out[i] = {channel[0][l], channel[1][l], channel[2][l]};
       }
-    });
-  }
+    }
+  });
   summary_.indirect_seconds += seconds_since(start);
 }
 

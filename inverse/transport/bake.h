@@ -48,7 +48,7 @@ class Baker {
   BakeSummary summary_;
   GatherOptions options_;
   GatherOperator gather_;
-  std::size_t lights_at_once_, receivers_at_once_;
+  std::size_t receivers_at_once_;
   // Of the lights chosen last: illumination of the gather points, block by block of them.
   std::size_t first_chosen_ = 0, chosen_ = 0;
   std::vector<std::vector<LightBlock>> illumination_;
