@@ -31,16 +31,6 @@ void check_cache(const SolveProblem& problem) {
   }
 }
 
-Receivers select_receivers(const Receivers& all, const std::vector<std::size_t>& chosen) {
-  Receivers some;
-  for (const std::size_t i : chosen) {
-    some.positions.push_back(all.positions[i]);
-    some.normals.push_back(all.normals[i]);
-    some.samples.push_back(all.samples[i]);
-  }
-  return some;
-}
-
 }  // namespace
 
 PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,

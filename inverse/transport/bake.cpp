@@ -41,12 +41,13 @@ std::size_t round_down(double value, std::size_t step, std::size_t least, std::s
   return std::clamp(std::size_t(steps) * step, least, most);
 }
 
-// Which receivers and lights the check looks at: spread evenly.
-std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
-  std::vector<std::size_t> chosen;
-  const std::size_t n = std::min(most, count);
-  for (std::size_t k = 0; k < n; ++k) chosen.push_back((2 * k + 1) * count / (2 * n));
-  return chosen;
+void put_into(TransportCache& cache, const TransportBlock& block) {
+  for (std::size_t l = 0; l < block.light_count; ++l) {
+    const std::size_t from = l * block.receiver_count;
+    const std::size_t to = (block.first_light + l) * cache.receiver_count + block.first_receiver;
+    std::copy_n(&block.visibility[from], block.receiver_count, &cache.visibility[to]);
+    std::copy_n(&block.indirect[from], block.receiver_count, &cache.indirect[to]);
+  }
 }
 
 renderer::Control without_progress(const renderer::Control& control) {
@@ -88,8 +89,8 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
 
 // Relative L2 distance of the indirect part from path-traced values, the latter's own noise taken off.
 double Baker::measure_indirect_error(const renderer::Control& control) {
-  const std::vector<std::size_t> lights = spread(header_.grid.positions.size(), kCheckedLights);
-  const std::vector<std::size_t> chosen = spread(receivers_.size(), kCheckedReceivers);
+  const std::vector<std::size_t> lights = evenly_spread(header_.grid.positions.size(), kCheckedLights);
+  const std::vector<std::size_t> chosen = evenly_spread(receivers_.size(), kCheckedReceivers);
   std::vector<SurfaceSample> samples;
   std::vector<LightBlock> indirect(chosen.size());
   std::vector<Vec3f> positions;
@@ -218,8 +219,7 @@ BakeResult bake(const RayTracer& tracer, const Receivers& receivers, const Light
   result.cache.visibility.resize(grid.positions.size() * receivers.size());
   result.cache.indirect.resize(result.cache.visibility.size());
   baker.bake(
-      0, receivers.size(), {},
-      [&](const TransportBlock& block) { put_into(result.cache, block.first_receiver, block); }, control);
+      0, receivers.size(), {}, [&](const TransportBlock& block) { put_into(result.cache, block); }, control);
   result.summary = baker.summary();
   return result;
 }

@@ -232,32 +232,28 @@ BlockSums inner_products(std::span<const LightBlock> a, std::span<const LightBlo
   return sums;
 }
 
-// By which factor each bounce shrinks the light, once it does so everywhere alike.
-BlockSums decay_of(std::span<const LightBlock> before, std::span<const LightBlock> after) {
-  constexpr double kMost = 0.999;
-  BlockSums decay = inner_products(after, before);
-  const BlockSums squares = inner_products(before, before);
-  for (int c = 0; c < 3; ++c) {
-    for (int l = 0; l < kLightBlock; ++l) {
-      const double ratio = squares.channel[c][l] > 0 ? decay.channel[c][l] / squares.channel[c][l] : 0;
-      decay.channel[c][l] = std::clamp(ratio, 0.0, kMost);
-    }
-  }
-  return decay;
-}
+// What follows a bounce, taken for a geometric series.
+struct Tail {
+  BlockSums decay;   // by which factor each bounce shrinks the light
+  double error = 0;  // that of the series' first term, carried on as it would be
+};
 
-// The error of taking what follows `after` for a geometric series: that of its first term, carried on as it would be.
-double error_of_tail(std::span<const LightBlock> before, std::span<const LightBlock> after, const BlockSums& decay) {
-  double sum = 0;
-  const BlockSums aa = inner_products(after, after), ab = inner_products(after, before),
+Tail tail_after(std::span<const LightBlock> before, std::span<const LightBlock> last) {
+  constexpr double kMost = 0.999;
+  const BlockSums ll = inner_products(last, last), lb = inner_products(last, before),
                   bb = inner_products(before, before);
+  Tail tail;
+  double squares = 0;
   for (int c = 0; c < 3; ++c) {
     for (int l = 0; l < kLightBlock; ++l) {
-      const double q = decay.channel[c][l], next = q / (1 - q);
-      sum += next * next * std::max(0.0, aa.channel[c][l] - 2 * q * ab.channel[c][l] + q * q * bb.channel[c][l]);
+      const double b2 = bb.channel[c][l], q = b2 > 0 ? std::clamp(lb.channel[c][l] / b2, 0.0, kMost) : 0;
+      const double next = q / (1 - q);
+      squares += next * next * std::max(0.0, ll.channel[c][l] - 2 * q * lb.channel[c][l] + q * q * b2);
+      tail.decay.channel[c][l] = q;
     }
   }
-  return std::sqrt(sum);
+  tail.error = std::sqrt(squares);
+  return tail;
 }
 
 void add_tail(std::span<LightBlock> sum, std::span<const LightBlock> last, const BlockSums& decay) {
@@ -282,9 +278,9 @@ std::vector<LightBlock> sum_of_bounces(const SparseTransport& point_from_point, 
     std::swap(term, next);
     add(sum, term);
     if (bounces >= 0) continue;
-    const BlockSums decay = decay_of(next, term);
-    if (error_of_tail(next, term, decay) > kNegligibleTail * std::sqrt(squared_norm(sum))) continue;
-    add_tail(sum, term, decay);
+    const Tail tail = tail_after(next, term);
+    if (tail.error > kNegligibleTail * std::sqrt(squared_norm(sum))) continue;
+    add_tail(sum, term, tail.decay);
     break;
   }
   return sum;

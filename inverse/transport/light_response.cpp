@@ -170,6 +170,12 @@ Column LightResponse::evaluate(const Vector3d& position, VisibilitySource source
   return column;
 }
 
+Column LightResponse::interpolated_columns(const Vector3d& position) const {
+  Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
+  for (const Weight& w : interpolation_weights(position)) column += w.value * grid_column(w.light);
+  return column;
+}
+
 Column LightResponse::grid_column(std::size_t light) const {
   Column column(Eigen::Index(receivers_.size()), 3);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {

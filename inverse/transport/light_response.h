@@ -38,6 +38,8 @@ class LightResponse {
   // The direct part alone, visibility traced; the indirect part alone.
   Column direct(const Eigen::Vector3d& position) const;
   Column interpolated_indirect(const Eigen::Vector3d& position) const;
+  // Whole columns interpolated, direct light and all, as published.
+  Column interpolated_columns(const Eigen::Vector3d& position) const;
   // The column of a grid light, as baked.
   Column grid_column(std::size_t light) const;
 

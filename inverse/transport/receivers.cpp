@@ -223,6 +223,23 @@ renderer::VertexMesh mesh_from_receivers(const Receivers& receivers) {
   return mesh;
 }
 
+Receivers select_receivers(const Receivers& all, std::span<const std::size_t> chosen) {
+  Receivers some;
+  for (const std::size_t i : chosen) {
+    some.positions.push_back(all.positions[i]);
+    some.normals.push_back(all.normals[i]);
+    some.samples.push_back(all.samples[i]);
+  }
+  return some;
+}
+
+std::vector<std::size_t> evenly_spread(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  const std::size_t n = std::min(most, count);
+  for (std::size_t k = 0; k < n; ++k) chosen.push_back((2 * k + 1) * count / (2 * n));
+  return chosen;
+}
+
 std::string fingerprint(const Receivers& receivers) {
   renderer::Fingerprint f;
   f.add_all(std::span<const Vec3f>(receivers.positions));

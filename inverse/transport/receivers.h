@@ -1,6 +1,7 @@
 #pragma once
 // The surface points on which illumination lives.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,11 @@ Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& op
 // The vertices of a mesh file, whoever wrote it.
 Receivers receivers_from_mesh(const renderer::VertexMesh& mesh);
 renderer::VertexMesh mesh_from_receivers(const Receivers& receivers);
+
+// Some of them, in the order of `chosen`: without triangles and parts.
+Receivers select_receivers(const Receivers& all, std::span<const std::size_t> chosen);
+// Numbers from 0 to count − 1, `most` of them where there are more, spread evenly.
+std::vector<std::size_t> evenly_spread(std::size_t count, std::size_t most);
 
 std::string fingerprint(const Receivers& receivers);
 

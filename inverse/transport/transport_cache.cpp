@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "inverse/transport/number_ranges.h"
-#include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
 
@@ -197,14 +196,13 @@ renderer::ExrTiles shape_of(const TransportCache& cache, std::size_t first, std:
           .channels = kChannels};
 }
 
-void require_finite(const TransportBlock& block, const std::string& file) {
-  for (std::size_t i = 0; i < block.indirect.size(); ++i) {
-    if (is_finite(block.indirect[i])) continue;
-    throw Error({file,
-                 fmt::format("light {}, receiver {}", block.first_light + i / block.receiver_count,
-                             block.first_receiver + i % block.receiver_count),
-                 "not a finite value", kNotACache});
-  }
+// receivers: of the columns.
+void require_finite(const TransportCache& cache, std::span<const std::size_t> receivers, const std::string& file) {
+  const auto bad = std::find_if_not(cache.indirect.begin(), cache.indirect.end(), [](Vec3f v) { return is_finite(v); });
+  if (bad == cache.indirect.end()) return;
+  const auto i = std::size_t(bad - cache.indirect.begin());
+  throw Error({file, fmt::format("light {}, receiver {}", i / receivers.size(), receivers[i % receivers.size()]),
+               "not a finite value", kNotACache});
 }
 
 // Receivers that are read at once, and where in the list those begin that are wanted of them.
@@ -238,7 +236,6 @@ void read_tiles(TransportCacheReader& reader, std::span<const std::size_t> recei
     if (!reader.read(block)) {
       throw Error({name, fmt::format("receiver {}", run.first), "cut short or damaged", "a whole file"});
     }
-    require_finite(block, name);
     for (std::size_t k = run.column; k < run.column + run.wanted; ++k) {
       for (std::size_t light = 0; light < block.light_count; ++light) {
         const std::size_t from = light * block.receiver_count + receivers[k] - run.first;
@@ -255,10 +252,6 @@ void read_scanlines(const std::filesystem::path& path, std::span<const std::size
   for (std::size_t light = 0; light < cache.grid.positions.size(); ++light) {
     for (std::size_t i = 0; i < receivers.size(); ++i) {
       const Entry entry = entry_of(file.image.at(int(receivers[i]), int(light)), channels, cache.indirect_scale);
-      if (!is_finite(entry.indirect)) {
-        throw Error({path.string(), fmt::format("light {}, receiver {}", light, receivers[i]), "not a finite value",
-                     kNotACache});
-      }
       cache.visibility[light * receivers.size() + i] = entry.visibility;
       cache.indirect[light * receivers.size() + i] = entry.indirect;
     }
@@ -296,14 +289,6 @@ void TransportBlock::resize() {
   indirect.assign(light_count * receiver_count, Vec3f{});
 }
 
-void put_into(TransportCache& cache, std::size_t column, const TransportBlock& block) {
-  for (std::size_t l = 0; l < block.light_count; ++l) {
-    const std::size_t from = l * block.receiver_count, to = (block.first_light + l) * cache.receiver_count + column;
-    std::copy_n(&block.visibility[from], block.receiver_count, &cache.visibility[to]);
-    std::copy_n(&block.indirect[from], block.receiver_count, &cache.indirect[to]);
-  }
-}
-
 std::size_t TransportCacheWriter::receivers_of_tile(std::size_t lights) {
   return std::bit_floor(std::clamp(kLights / std::max<std::size_t>(1, lights), std::size_t{1}, kMostReceivers));
 }
@@ -326,9 +311,10 @@ void TransportCacheWriter::write(const TransportBlock& block) {
 void TransportCacheWriter::close() { file_.close(); }
 
 TransportCacheReader::TransportCacheReader(const std::filesystem::path& path)
-    : file_(path), header_(read_header(file_.attributes(), file_.shape().width, file_.shape().height, path.string())) {
+    : file_(path),
+      header_(read_header(file_.attributes(), file_.shape().width, file_.shape().height, path.string())),
+      channels_(find_channels(file_.shape().channels, path.string())) {
   const renderer::ExrTiles& shape = file_.shape();
-  find_channels(shape.channels, path.string());
   if (shape.first_column % shape.tile_width != 0) {
     throw Error({path.string(), "header", "begins within a tile", kNotACache});
   }
@@ -346,7 +332,6 @@ bool TransportCacheReader::read(TransportBlock& block) {
   const renderer::ExrTiles& shape = file_.shape();
   CHIARO_CHECK(block.first_light % std::size_t(shape.tile_height) == 0);
   block.resize();
-  const std::array<int, 4> channels = find_channels(shape.channels, "");
   const std::size_t tile_height = std::size_t(shape.tile_height), width = shape.channels.size();
   const std::size_t row = block.first_light / tile_height;
   const std::size_t rows = (block.light_count + tile_height - 1) / tile_height;
@@ -356,27 +341,10 @@ bool TransportCacheReader::read(TransportBlock& block) {
     return false;
   }
   for (std::size_t i = 0; i < block.visibility.size(); ++i) {
-    const Entry entry = entry_of(&pixels[width * i], channels, header_.indirect_scale);
+    const Entry entry = entry_of(&pixels[width * i], channels_, header_.indirect_scale);
     block.visibility[i] = entry.visibility, block.indirect[i] = entry.indirect;
   }
   return true;
-}
-
-void save_transport_cache(const TransportCache& cache, const std::filesystem::path& path) {
-  renderer::write_atomically(path, [&](const std::filesystem::path& aside) {
-    TransportCacheWriter writer(aside, cache, 0, cache.receiver_count);
-    const std::size_t lights = cache.grid.positions.size();
-    for (std::size_t first = 0; first < lights; first += TransportCacheWriter::kLights) {
-      TransportBlock block{first, std::min(lights - first, TransportCacheWriter::kLights), 0, cache.receiver_count, {},
-                           {}};
-      const auto from = std::ptrdiff_t(first * cache.receiver_count);
-      const auto to = from + std::ptrdiff_t(block.light_count * cache.receiver_count);
-      block.visibility.assign(cache.visibility.begin() + from, cache.visibility.begin() + to);
-      block.indirect.assign(cache.indirect.begin() + from, cache.indirect.begin() + to);
-      writer.write(block);
-    }
-    writer.close();
-  });
 }
 
 TransportCache load_transport_cache_header(const std::filesystem::path& path) {
@@ -407,6 +375,7 @@ TransportCache load_transport_cache(const std::filesystem::path& path,
   } else {
     read_scanlines(path, *receivers, cache);
   }
+  require_finite(cache, *receivers, path.string());
   return cache;
 }
 

@@ -46,9 +46,6 @@ struct TransportBlock {
   void resize();  // to its counts, zero
 };
 
-// Copies the block into a cache whose receiver `column` is the block's first.
-void put_into(TransportCache& cache, std::size_t column, const TransportBlock& block);
-
 // An OpenEXR file of tiles: width = receivers, height = lights; half channels `visibility`, `indirect.R/.G/.B`; the
 // rest in the header. docs/caches.md has all of it.
 class TransportCacheWriter {
@@ -91,9 +88,8 @@ class TransportCacheReader {
  private:
   renderer::ExrTileReader file_;
   TransportCache header_;
+  std::array<int, 4> channels_;  // where the file has them
 };
-
-void save_transport_cache(const TransportCache& cache, const std::filesystem::path& path);
 
 // Everything but the entries.
 TransportCache load_transport_cache_header(const std::filesystem::path& path);

@@ -17,7 +17,6 @@
 #include "inverse/transport/bake.h"
 #include "renderer/core/seconds_since.h"
 #include "renderer/io/load_gltf.h"
-#include "tests/benchmarks/thinned_receivers.h"
 
 namespace {
 
@@ -149,10 +148,9 @@ Noise noise_of(const Baked& a, const Baked& b, std::size_t lights) {
 double seconds_per_light(const RayTracer& tracer, const Receivers& receivers, const std::vector<Vec3f>& lights,
                          double error) {
   double variance = 0, value = 0, seconds = 0;
-  for (std::size_t k = 0; k < kTracedLights; ++k) {
-    const renderer::Lights unity{
-        renderer::PointLight{"", lights[(2 * k + 1) * lights.size() / (2 * kTracedLights)], {1, 1, 1}}};
-    renderer::TraceOptions options{kTracedSamples, -1, k, false};
+  for (const std::size_t light : evenly_spread(lights.size(), kTracedLights)) {
+    const renderer::Lights unity{renderer::PointLight{"", lights[light], {1, 1, 1}}};
+    renderer::TraceOptions options{kTracedSamples, -1, light, false};
     const auto start = now();
     const auto all = renderer::trace_illumination(tracer, receivers.samples, unity, options, {});
     seconds += seconds_since(start) / kTracedLights;
@@ -184,7 +182,9 @@ int main(int argc, char** argv) {
   }
   const LightGrid grid = make_light_grid(tracer, grid_options);
   Receivers receivers = make_receivers(loaded.scene, {});
-  if (argc > 3 && std::atoi(argv[3]) > 0) receivers = thinned(receivers, std::size_t(std::atoi(argv[3])));
+  if (argc > 3 && std::atoi(argv[3]) > 0) {
+    receivers = select_receivers(receivers, evenly_spread(receivers.size(), std::size_t(std::atoi(argv[3]))));
+  }
   BakeSettings settings{.samples = argc > 4 ? std::atoi(argv[4]) : 256, .bounces = -1, .seed = 0, .materials = "gltf"};
 
   const double raw = RawScene(loaded.scene).rate(receivers, grid.positions);

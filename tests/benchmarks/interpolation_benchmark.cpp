@@ -14,7 +14,6 @@
 #include "renderer/core/sampler.h"
 #include "renderer/core/seconds_since.h"
 #include "renderer/io/load_gltf.h"
-#include "tests/benchmarks/thinned_receivers.h"
 
 namespace {
 
@@ -22,35 +21,6 @@ using namespace chiaro;
 using namespace chiaro::inverse;
 using renderer::Sampler;
 using renderer::seconds_since;
-
-struct Corner {
-  std::size_t light;
-  double weight;
-};
-
-// Trilinear; nodes that are left out lose their share to the others.
-std::vector<Corner> corners_around(const LightGrid& grid, Vec3f position) {
-  std::vector<Corner> corners;
-  double total = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1;
-    std::size_t node = 0, stride = 1;
-    for (int a = 0; a < 3; ++a) {
-      const int last = grid.counts[a] - 1;
-      const double at = std::clamp(double((position[a] - grid.origin[a]) / grid.spacing[a]), 0.0, double(last));
-      const int low = std::min(int(at), std::max(0, last - 1));
-      const bool high = (corner >> a & 1) != 0;
-      weight *= high ? at - low : 1 - (at - low);
-      node += stride * std::size_t(std::min(last, low + (high ? 1 : 0)));
-      stride *= std::size_t(grid.counts[a]);
-    }
-    if (weight <= 0 || grid.light_of_node[node] < 0) continue;
-    corners.push_back({std::size_t(grid.light_of_node[node]), weight});
-    total += weight;
-  }
-  for (Corner& c : corners) c.weight /= total;
-  return corners;
-}
 
 // Where a light may stand: its nearest node is not left out.
 std::vector<Vec3f> random_positions(const LightGrid& grid, std::size_t count) {
@@ -90,8 +60,9 @@ int main(int argc, char** argv) {
     std::sscanf(argv[2], "%d,%d,%d", &grid_options.counts[0], &grid_options.counts[1], &grid_options.counts[2]);
   }
   const std::size_t count = argc > 3 ? std::size_t(std::atoi(argv[3])) : 1000;
+  const Receivers all = make_receivers(loaded.scene, {});
   const Receivers receivers =
-      thinned(make_receivers(loaded.scene, {}), argc > 4 ? std::size_t(std::atoi(argv[4])) : 1000);
+      select_receivers(all, evenly_spread(all.size(), argc > 4 ? std::size_t(std::atoi(argv[4])) : 1000));
   const LightGrid grid = make_light_grid(tracer, grid_options);
   const BakeSettings settings{.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"};
   const TransportCache cache = bake(tracer, receivers, grid, settings).cache;
@@ -116,9 +87,7 @@ int main(int argc, char** argv) {
     exact += indirect;
     apart.push_back((response.evaluate(at, VisibilitySource::kInterpolated) - exact).norm() / exact.norm());
     indirect_apart.push_back((response.interpolated_indirect(at) - indirect).norm() / exact.norm());
-    Column columns = Column::Zero(exact.rows(), 3);
-    for (const Corner& c : corners_around(grid, position)) columns += c.weight * response.grid_column(c.light);
-    whole.push_back((columns - exact).norm() / exact.norm());
+    whole.push_back((response.interpolated_columns(at) - exact).norm() / exact.norm());
   }
   std::printf("%zu lights, %d x %d x %d; %zu receivers, %zu positions\n", grid.positions.size(), grid.counts[0],
               grid.counts[1], grid.counts[2], receivers.size(), count);

@@ -65,13 +65,7 @@ class DirectProblem {
  public:
   explicit DirectProblem(const LightEstimates& lights, std::size_t count = 250) {
     const Receivers& all = corner_.receivers();
-    Receivers some;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = (2 * k + 1) * all.size() / (2 * count);
-      some.positions.push_back(all.positions[i]);
-      some.normals.push_back(all.normals[i]);
-      some.samples.push_back(all.samples[i]);
-    }
+    const Receivers some = select_receivers(all, evenly_spread(all.size(), count));
     samples_ = some.samples;
     cache_ = bake(corner_.tracer(), some, make_light_grid(corner_.tracer(), {.counts = {6, 5, 6}, .region = {}}),
                   bake_settings(0))

@@ -6,6 +6,7 @@
 
 #include "renderer/core/error.h"
 #include "tests/inverse/solve/painted_corner.h"
+#include "tests/support/save_transport_cache.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {

@@ -8,6 +8,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/image/image_file.h"
+#include "tests/support/save_transport_cache.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
