@@ -200,19 +200,21 @@ void LightSelection::weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsd
   sum_groups(weights);
 }
 
-LightSelection::Pick LightSelection::Walk::find(double at) {
-  for (; group_ < selection_.groups_; ++group_) {
-    const double after = before_ + double(weights_.of_group[group_]);
+// Where the sum of the weights exceeds `at`.
+LightSelection::Pick LightSelection::find(const Weights& weights, double at) const {
+  std::size_t group = 0;
+  double sum = 0;
+  for (; group < groups_; ++group) {
+    const double after = sum + double(weights.of_group[group]);
     if (at < after) break;
-    before_ = after;
+    sum = after;
   }
-  if (group_ == selection_.groups_) return {};
-  double sum = before_;
+  if (group == groups_) return {};
   Pick last;
-  for (std::size_t k = group_ * kLanes; k < (group_ + 1) * kLanes; ++k) {
-    const double w = double(weights_.of_light[k]);
+  for (std::size_t k = group * kLanes; k < (group + 1) * kLanes; ++k) {
+    const double w = double(weights.of_light[k]);
     if (!(w > 0)) continue;
-    last = {selection_.order_[k], float(w / weights_.total)};
+    last = {order_[k], float(w / weights.total)};
     sum += w;
     if (at < sum) break;
   }
@@ -228,7 +230,15 @@ LightSelection::Pick LightSelection::pick(Vec3f point, Vec3f normal, double u) c
   if (!weighs_all()) return pick_from_tree(point, normal, u);
   Weights weights;
   weigh(point, normal, weights);
-  return Walk(*this, weights).find(u * weights.total);
+  return find(weights, u * weights.total);
+}
+
+LightSelection::Pick LightSelection::pick(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface,
+                                          double u) const {
+  if (!weighs_all()) return pick_from_tree(point, normal, u);
+  Weights weights;
+  weigh(point, normal, to_viewer, surface, weights);
+  return find(weights, u * weights.total);
 }
 
 // The tree, then the lights at infinity.

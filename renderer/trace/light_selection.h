@@ -43,6 +43,8 @@ class LightSelection {
   // normal: of the surface; the zero vector stands for one that light goes through, here and below. 0 ≤ u < 1.
   // Neighbours in u are neighbours in space, so that stratified ones spread over the scene.
   Pick pick(Vec3f point, Vec3f normal, double u) const;
+  // Where all are weighed: in proportion to about what the surface would send of the light to the viewer, too.
+  Pick pick(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface, double u) const;
   // With which pick() gives the light.
   float probability(std::size_t light, Vec3f point, Vec3f normal) const;
 
@@ -63,25 +65,13 @@ class LightSelection {
   void weigh(Vec3f point, Vec3f normal, Vec3f to_viewer, const Bsdf::Sketch& surface, Weights& weights) const;
   std::span<const std::size_t> lights_in_order() const { return order_; }
 
-  // Goes through the weights to where their sum exceeds `at`, and further with each call. `at` must not fall.
-  class Walk {
-   public:
-    Walk(const LightSelection& selection, const Weights& weights) : selection_(selection), weights_(weights) {}
-    Pick find(double at);
-
-   private:
-    const LightSelection& selection_;
-    const Weights& weights_;
-    std::size_t group_ = 0;
-    double before_ = 0;  // sum of the groups before
-  };
-
  private:
   static void set_lane(const Light& light, std::size_t lane, LightLanes& lanes);
   template <class Response>
   void weigh_distant(Vec3f point, Vec3f normal, const Response& response, Weights& weights) const;
   void apply_visibility(Vec3f point, Vec3f normal, Weights& weights) const;
   void sum_groups(Weights& weights) const;
+  Pick find(const Weights& weights, double at) const;
   float distant_weight(std::size_t light, Vec3f normal) const;
   Pick pick_from_tree(Vec3f point, Vec3f normal, double u) const;
 

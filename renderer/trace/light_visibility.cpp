@@ -6,7 +6,7 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr std::size_t kMostCounts = 2'000'000;  // 24 MB
+constexpr std::size_t kMostCounts = 500'000;  // 6 MB
 constexpr double kMostCells = 32 * 32 * 32;
 constexpr std::size_t kWays = 6;
 // No light's chance falls below this part of what it would be if it were seen.

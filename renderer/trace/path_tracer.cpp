@@ -16,9 +16,6 @@ constexpr float kMostSurvival = 0.95F;
 // light; farther away scattered rays find as much, for less.
 constexpr float kSubpathReach = 0.1F;
 
-// Lights that vertex 0 asks where there are many.
-constexpr int kAsked = 2;
-
 // By how much the cone grows that a scattered ray stands for when textures are looked up: by the width of the
 // directions that share its density, as if some hundred rays shared them.
 float scattered_cone(float pdf) {
@@ -130,38 +127,18 @@ void PathTracer::add_all_punctual(const Vertex& v, Vec3f throughput, Path& path)
   }
 }
 
-void PathTracer::add_chosen(const Vertex& v, LightSelection::Pick chosen, Vec3f throughput, Path& path) const {
-  const PunctualSample s = sample_punctual(lights_[chosen.light], v.position);
-  const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / chosen.probability;
-  if (!is_finite(value)) return;
-  add_punctual_if_seen(v, chosen.light, s, value, path);
-}
-
-void PathTracer::add_some_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
-  const double u = next_fine(path.sampler);
-  if (!selection_.weighs_all()) {
-    for (int k = 0; k < kAsked; ++k) {
-      const LightSelection::Pick pick = selection_.pick(v.position, v.pick_normal(), (k + u) / kAsked);
-      if (pick.probability > 0) add_chosen(v, {pick.light, kAsked * pick.probability}, throughput, path);
-    }
-    return;
-  }
+// One of many, by what the viewer would see of it.
+void PathTracer::add_one_seen(const Vertex& v, Vec3f throughput, Path& path) const {
   const Bsdf::Sketch surface = v.bsdf != nullptr ? v.bsdf->sketch() : Bsdf::Sketch{};
-  LightSelection::Weights weights;
-  selection_.weigh(v.position, v.pick_normal(), v.to_viewer, surface, weights);
-  LightSelection::Walk walk(selection_, weights);
-  // A light that is found more than once is asked once.
-  LightSelection::Pick found = walk.find(u / kAsked * weights.total);
-  for (int k = 0; k < kAsked;) {
-    const LightSelection::Pick chosen = found;
-    int times = 0;
-    for (; k < kAsked && found.light == chosen.light; found = walk.find((k + u) / kAsked * weights.total)) ++k, ++times;
-    if (!(chosen.probability > 0)) continue;
-    add_chosen(v, {chosen.light, kAsked * chosen.probability / float(times)}, throughput, path);
-  }
+  const auto [i, probability] =
+      selection_.pick(v.position, v.pick_normal(), v.to_viewer, surface, next_fine(path.sampler));
+  if (!(probability > 0)) return;
+  const PunctualSample s = sample_punctual(lights_[i], v.position);
+  const Vec3f value = throughput * v.eval(s.to_light, v.punctual) * s.irradiance / probability;
+  if (is_finite(value)) add_punctual_if_seen(v, i, s, value, path);
 }
 
-// Beyond vertex 0, where one light is enough. Weighted against a ray from that light having ended here.
+// One of all, beyond vertex 0. Weighted against a ray from that light having ended here.
 void PathTracer::add_one_punctual(const Vertex& v, Vec3f throughput, Path& path) const {
   const auto [i, probability] = selection_.pick(v.position, v.pick_normal(), next_fine(path.sampler));
   if (!(probability > 0)) return;
@@ -218,7 +195,7 @@ void PathTracer::add_punctual(const Vertex& v, Vec3f throughput, Path& path) con
   } else if (selection_.few()) {
     add_all_punctual(v, throughput, path);
   } else {
-    add_some_punctual(v, throughput, path);
+    add_one_seen(v, throughput, path);
   }
 }
 

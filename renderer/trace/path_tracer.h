@@ -119,8 +119,7 @@ class PathTracer {
   void add_punctual_if_seen(const Vertex& vertex, std::size_t light, const PunctualSample& sample, Vec3f value,
                             Path& path) const;
   void add_all_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
-  void add_some_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
-  void add_chosen(const Vertex& vertex, LightSelection::Pick chosen, Vec3f throughput, Path& path) const;
+  void add_one_seen(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_one_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
   Vertex vertex_at(const SurfacePoint& point, const Bsdf& bsdf, Vec3f to_viewer, int index) const;
   Path start_path(Sampler& sampler, PathLight& light) const;
