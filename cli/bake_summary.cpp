@@ -20,6 +20,7 @@ JsonObject bake_summary(const inverse::TransportCache& header, const inverse::Ba
           {"shadow_rays", summary.shadow_rays},
           {"gather_rays", summary.gather_rays},
           {"gather_points", summary.gather_points},
+          {"records", summary.records},
           {"stages", JsonList{JsonObject{{"name", "direct"}, {"seconds", summary.direct_seconds}},
                               JsonObject{{"name", "indirect"}, {"seconds", summary.indirect_seconds}},
                               JsonObject{{"name", "check"}, {"seconds", summary.check_seconds}},

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,8 @@ constexpr std::size_t kBand = TransportCacheWriter::kLights;
 // Of a block: whole tiles.
 constexpr std::size_t kLeastReceivers = TransportCacheWriter::kMostReceivers, kMostReceivers = 16 * kLeastReceivers;
 constexpr double kBytesPerEntry = 64;  // of a block, with what its writing takes
+constexpr std::size_t kLeastRecords = 64, kMostRecords = 4096, kLeastLights = 64;
+constexpr double kMostRays = 16;  // of a record, over those asked for per receiver
 
 TransportCache header_of(const RayTracer& tracer, const Receivers& receivers, const LightGrid& grid,
                          const BakeSettings& settings) {
@@ -39,6 +42,11 @@ TransportCache header_of(const RayTracer& tracer, const Receivers& receivers, co
 std::size_t round_down(double value, std::size_t step, std::size_t least, std::size_t most) {
   const double steps = std::clamp(value / double(step), 0.0, double(most));
   return std::clamp(std::size_t(steps) * step, least, most);
+}
+
+// Rays of a record: about as many altogether as asked for.
+int rays_of_record(int samples, std::size_t receivers, std::size_t records) {
+  return int(std::min(kMostRays, double(receivers) / double(std::max<std::size_t>(1, records))) * samples);
 }
 
 void put_into(TransportCache& cache, const TransportBlock& block) {
@@ -64,44 +72,63 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
       receivers_(receivers),
       header_(header_of(tracer, receivers, grid, settings)),
       options_{.samples = settings.samples, .bounces = settings.bounces, .seed = settings.seed} {
-  const double points = settings.bounces == 0 ? 0 : double(options_.samples) * options_.points_per_sample;
-  const double lights = points * double(std::min(kBand, grid.positions.size())) * sizeof(LightBlock) / kLightBlock;
-  const double per_receiver = kBytesPerEntry * double(kBand), rows = double(receivers.size()) * options_.samples;
-  const double left = (memory - lights) / 2;
-  receivers_at_once_ = round_down(left / per_receiver, kLeastReceivers, kLeastReceivers, kMostReceivers);
-  keeps_rows_ = rows * sizeof(SparseTransport::Entry) <= left;
-  if (left < per_receiver * kLeastReceivers) {
-    const double needed = lights + 2 * per_receiver * kLeastReceivers;
-    throw renderer::Error({tracer.scene().path, "option --memory",
-                           fmt::format("{:.0f} MB are left for the bake", std::max(0.0, memory) / 1e6),
-                           fmt::format("{:.0f} MB or more, or fewer --samples", std::ceil(needed / 1e6))});
-  }
-  if (settings.bounces == 0) return;
   auto start = std::chrono::steady_clock::now();
-  gather_ = make_gather_points(tracer, receivers.samples, options_, control);
-  summary_.gather_rays = gather_.ray_count;
-  summary_.gather_points = gather_.points.size();
+  if (settings.bounces != 0) {
+    records_ = choose_irradiance_records(tracer, receivers.samples, options_.seed + 4, control);
+    gather_ = make_gather_points(tracer, receivers.samples, options_, control);
+    options_.samples = rays_of_record(settings.samples, receivers.size(), records_.receivers.size());
+    summary_.records = records_.receivers.size();
+    summary_.gather_rays = gather_.ray_count;
+    summary_.gather_points = gather_.points.size();
+  }
   summary_.indirect_seconds = seconds_since(start);
+  set_memory(memory);
+  if (settings.bounces == 0) return;
   start = std::chrono::steady_clock::now();
   header_.indirect_relative_error = measure_indirect_error(without_progress(control));
   summary_.check_seconds = seconds_since(start);
+}
+
+// What is worked on at once, beside the illumination of the records by a band of lights: a third for each.
+void Baker::set_memory(double memory) {
+  const double records = double(records_.receivers.size()),
+               band = double(std::min(kBand, header_.grid.positions.size()));
+  const double per_value = double(sizeof(LightBlock)) / kLightBlock;
+  const double per_receiver = kBytesPerEntry * double(kBand);
+  const double per_record = double(options_.samples) * sizeof(SparseTransport::Entry);
+  const double per_light = double(gather_.points.size()) * per_value;
+  const double least = std::max({per_receiver * kLeastReceivers, per_record * kLeastRecords, per_light * kLeastLights});
+  const double beside = records * band * per_value, each = (memory - beside) / 3;
+  if (each < least) {
+    throw renderer::Error(
+        {tracer_.scene().path, "option --memory",
+         fmt::format("{:.0f} MB are left for the bake", std::max(0.0, memory) / 1e6),
+         fmt::format("{:.0f} MB or more, or fewer --samples", std::ceil((beside + 3 * least) / 1e6))});
+  }
+  receivers_at_once_ = round_down(each / per_receiver, kLeastReceivers, kLeastReceivers, kMostReceivers);
+  records_at_once_ = round_down(each / per_record, kLeastRecords, kLeastRecords, kMostRecords);
+  lights_at_once_ = round_down(each / std::max(1.0, per_light), kLeastLights, kLeastLights, kBand);
+  keeps_rows_ = per_record * records <= each;
+}
+
+SparseTransport Baker::trace_rows(std::span<const std::size_t> receivers, const renderer::Control& control) const {
+  return trace_receiver_rows(tracer_, gather_, receivers_.samples, receivers, options_, control);
 }
 
 // Relative L2 distance of the indirect part from path-traced values, the latter's own noise taken off.
 double Baker::measure_indirect_error(const renderer::Control& control) {
   const std::vector<std::size_t> lights = evenly_spread(header_.grid.positions.size(), kCheckedLights);
   const std::vector<std::size_t> chosen = evenly_spread(receivers_.size(), kCheckedReceivers);
-  std::vector<SurfaceSample> samples;
+  const std::vector<SurfaceSample> samples = select_receivers(receivers_, chosen).samples;
   std::vector<LightBlock> indirect(chosen.size());
   std::vector<Vec3f> positions;
-  for (const std::size_t i : chosen) samples.push_back(receivers_.samples[i]);
   for (const std::size_t light : lights) positions.push_back(header_.grid.positions[light]);
   if (!gather_.points.empty()) {
-    const auto illumination = illumination_of_gather_points(tracer_, gather_, positions);
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      const auto row = trace_receiver_rows(tracer_, gather_, {&samples[i], 1}, chosen[i], options_, control);
-      multiply(row, illumination, {&indirect[i], 1});
-    }
+    const IrradianceRecords records = records_of(records_, chosen);
+    std::vector<LightBlock> illumination(records.receivers.size());
+    multiply(trace_rows(records.receivers, control), illumination_of_gather_points(tracer_, gather_, positions),
+             illumination);
+    for (std::size_t i = 0; i < chosen.size(); ++i) indirect[i] = interpolate(records, i, illumination);
   }
   double difference = 0, noise = 0, reference = 0;
   for (std::size_t k = 0; k < lights.size(); ++k) {
@@ -121,27 +148,50 @@ double Baker::measure_indirect_error(const renderer::Control& control) {
   return reference > 0 ? std::sqrt(std::max(0.0, difference - noise) / reference) : 0;
 }
 
-void Baker::choose_lights(std::size_t first, std::size_t count, const renderer::Control& control) {
-  if (first == first_chosen_ && count == chosen_) return;
-  first_chosen_ = first, chosen_ = count;
-  illumination_.resize((count + kLightBlock - 1) / kLightBlock);
-  renderer::parallel_for(illumination_.size(), "", control, [&](std::size_t block) {
+void Baker::set_receivers(std::size_t first, std::size_t last) {
+  if (first == first_receiver_ && last == last_receiver_) return;
+  first_receiver_ = first, last_receiver_ = last;
+  rows_.clear();
+  if (gather_.points.empty()) return;
+  std::vector<std::size_t> receivers(last - first);
+  std::iota(receivers.begin(), receivers.end(), first);
+  needed_ = records_of(records_, receivers);
+}
+
+void Baker::set_lights(std::size_t first, std::size_t count, const renderer::Control& control) {
+  const auto start = std::chrono::steady_clock::now();
+  illumination_.assign((count + kLightBlock - 1) / kLightBlock, std::vector<LightBlock>(needed_.receivers.size()));
+  for (std::size_t light = 0; light < count; light += lights_at_once_) {
+    gather_at_records(first + light, std::min(lights_at_once_, count - light), &illumination_[light / kLightBlock],
+                      control);
+    if (control.report) control.report("gather", double(std::min(light + lights_at_once_, count)) / double(count));
+  }
+  summary_.indirect_seconds += seconds_since(start);
+}
+
+// Into illumination[0], illumination[1] …, a block of lights each.
+void Baker::gather_at_records(std::size_t first, std::size_t count, std::vector<LightBlock>* illumination,
+                              const renderer::Control& control) {
+  const renderer::Control quiet = without_progress(control);
+  std::vector<std::vector<LightBlock>> of_points((count + kLightBlock - 1) / kLightBlock);
+  renderer::parallel_for(of_points.size(), "", quiet, [&](std::size_t block) {
     const std::size_t at = block * kLightBlock;
     const auto lights =
         std::span(header_.grid.positions).subspan(first + at, std::min<std::size_t>(kLightBlock, count - at));
-    illumination_[block] = illumination_of_gather_points(tracer_, gather_, lights);
+    of_points[block] = illumination_of_gather_points(tracer_, gather_, lights);
   });
-}
-
-const SparseTransport& Baker::rows_of(std::size_t first, std::size_t count, const renderer::Control& control) {
-  for (const Rows& known : rows_) {
-    if (known.first_receiver == first && known.rows.row_count() == count) return known.rows;
+  const std::size_t records = needed_.receivers.size();
+  for (std::size_t record = 0, part = 0; record < records; record += records_at_once_, ++part) {
+    const std::size_t some = std::min(records_at_once_, records - record);
+    if (!keeps_rows_) rows_.clear(), part = 0;
+    if (part == rows_.size()) {
+      rows_.push_back(trace_rows(std::span(needed_.receivers).subspan(record, some), quiet));
+      summary_.gather_rays += some * std::size_t(options_.samples);
+    }
+    renderer::parallel_for(of_points.size(), "", quiet, [&](std::size_t block) {
+      multiply(rows_[part], of_points[block], std::span(illumination[block]).subspan(record, some));
+    });
   }
-  if (!keeps_rows_) rows_.clear();
-  const auto receivers = std::span(receivers_.samples).subspan(first, count);
-  rows_.push_back({first, trace_receiver_rows(tracer_, gather_, receivers, first, options_, control)});
-  summary_.gather_rays += count * std::size_t(options_.samples);
-  return rows_.back().rows;
 }
 
 void Baker::fill_direct(TransportBlock& block, const renderer::Control& control) {
@@ -169,18 +219,13 @@ void Baker::fill_direct(TransportBlock& block, const renderer::Control& control)
 void Baker::fill_indirect(TransportBlock& block, const renderer::Control& control) {
   if (gather_.points.empty()) return;
   const auto start = std::chrono::steady_clock::now();
-  const SparseTransport& rows = rows_of(block.first_receiver, block.receiver_count, control);
-  choose_lights(block.first_light, block.light_count, control);
   renderer::parallel_for(illumination_.size(), "", control, [&](std::size_t part) {
-    std::vector<LightBlock> columns(block.receiver_count);
-    multiply(rows, illumination_[part], columns);
     const std::size_t first = part * kLightBlock;
     const std::size_t count = std::min<std::size_t>(kLightBlock, block.light_count - first);
-    for (std::size_t l = 0; l < count; ++l) {
-      Vec3f* out = &block.indirect[(first + l) * block.receiver_count];
-      for (std::size_t i = 0; i < columns.size(); ++i) {
-        const auto& channel = columns[i].channel;
-        out[i] = {channel[0][l], channel[1][l], channel[2][l]};
+    for (std::size_t i = 0; i < block.receiver_count; ++i) {
+      const LightBlock at = interpolate(needed_, block.first_receiver + i - first_receiver_, illumination_[part]);
+      for (std::size_t l = 0; l < count; ++l) {
+        block.indirect[(first + l) * block.receiver_count + i] = {at.channel[0][l], at.channel[1][l], at.channel[2][l]};
       }
     }
   });
@@ -190,23 +235,30 @@ void Baker::fill_indirect(TransportBlock& block, const renderer::Control& contro
 void Baker::bake(std::size_t first, std::size_t last, Place start,
                  const std::function<void(const TransportBlock&)>& visit, const renderer::Control& control) {
   const renderer::Control quiet = without_progress(control);
+  set_receivers(first, last);
   const std::size_t lights = header_.grid.positions.size();
-  const double all = double(lights) * double(last - first);
+  // Of a band of lights, the gathering of indirect light counts as the first part.
+  const double gathering = gather_.points.empty() ? 0 : 0.5;
   for (std::size_t light = start.light; light < lights; light += kBand) {
+    const std::size_t count = std::min(kBand, lights - light);
     std::size_t receiver = light == start.light ? std::max(first, start.receiver) : first;
+    const auto report = [&](double gathered) {
+      const double done = gathering * gathered + (1 - gathering) * double(receiver - first) / double(last - first);
+      if (control.report) control.report("bake", (double(light) + done * double(count)) / double(lights));
+    };
+    renderer::Control of_gathering = quiet;
+    of_gathering.report = [&](std::string_view, double gathered) { report(gathered); };
+    if (!gather_.points.empty()) set_lights(light, count, of_gathering);
     while (receiver < last) {
       TransportBlock block;
-      block.first_light = light, block.light_count = std::min(kBand, lights - light);
-      // To where a block would end that had begun at the first receiver, so that rows are found again.
-      const std::size_t end = first + ((receiver - first) / receivers_at_once_ + 1) * receivers_at_once_;
-      block.first_receiver = receiver, block.receiver_count = std::min(end, last) - receiver;
+      block.first_light = light, block.light_count = count;
+      block.first_receiver = receiver, block.receiver_count = std::min(receivers_at_once_, last - receiver);
       block.resize();
       fill_direct(block, quiet);
       fill_indirect(block, quiet);
       visit(block);
       receiver += block.receiver_count;
-      const double done = double(light) * double(last - first) + double(block.light_count) * double(receiver - first);
-      if (control.report) control.report("bake", done / all);
+      report(1);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "inverse/transport/gather_operator.h"
+#include "inverse/transport/irradiance_records.h"
 #include "inverse/transport/receivers.h"
 #include "inverse/transport/transport_cache.h"
 #include "renderer/core/control.h"
@@ -11,11 +12,12 @@ namespace chiaro::inverse {
 
 struct BakeSummary {
   double direct_seconds = 0, indirect_seconds = 0, check_seconds = 0, write_seconds = 0;
-  std::size_t shadow_rays = 0, gather_rays = 0, gather_points = 0;
+  std::size_t shadow_rays = 0, gather_rays = 0, gather_points = 0, records = 0;
 };
 
 // Transport from every light of the grid to every receiver: direct visibility, and indirect light through shared gather
-// points (gather_operator.h). Entries do not depend on the parts that they are computed in, nor on what was before.
+// points (gather_operator.h), which records gather and the other receivers interpolate (irradiance_records.h). Entries
+// do not depend on the parts that they are computed in, nor on what was before.
 class Baker {
  public:
   // Traces the gather points. Keeps references to tracer and receivers, which must outlive it. `memory`: bytes that it
@@ -36,8 +38,12 @@ class Baker {
             const renderer::Control& control);
 
  private:
-  void choose_lights(std::size_t first, std::size_t count, const renderer::Control& control);
-  const SparseTransport& rows_of(std::size_t first_receiver, std::size_t count, const renderer::Control& control);
+  void set_memory(double bytes);
+  void set_receivers(std::size_t first, std::size_t last);
+  void set_lights(std::size_t first, std::size_t count, const renderer::Control& control);
+  void gather_at_records(std::size_t first, std::size_t count, std::vector<LightBlock>* illumination,
+                         const renderer::Control& control);
+  SparseTransport trace_rows(std::span<const std::size_t> receivers, const renderer::Control& control) const;
   void fill_direct(TransportBlock& block, const renderer::Control& control);
   void fill_indirect(TransportBlock& block, const renderer::Control& control);
   double measure_indirect_error(const renderer::Control& control);
@@ -48,17 +54,15 @@ class Baker {
   BakeSummary summary_;
   GatherOptions options_;
   GatherOperator gather_;
-  std::size_t receivers_at_once_;
-  // Of the lights chosen last: illumination of the gather points, block by block of them.
-  std::size_t first_chosen_ = 0, chosen_ = 0;
+  IrradianceRecords records_;
+  std::size_t receivers_at_once_ = 0, records_at_once_ = 0, lights_at_once_ = 0;
+  bool keeps_rows_ = false;
+  // Of the receivers set last: their records, and the rows of K_rg of so many of these at once as memory allows.
+  std::size_t first_receiver_ = 0, last_receiver_ = 0;
+  IrradianceRecords needed_;
+  std::vector<SparseTransport> rows_;
+  // Illumination of these records by the lights set last, block by block of lights.
   std::vector<std::vector<LightBlock>> illumination_;
-  // Rows of K_rg by their first receiver; all of them where memory allows, or else the last.
-  bool keeps_rows_;
-  struct Rows {
-    std::size_t first_receiver = 0;
-    SparseTransport rows;
-  };
-  std::vector<Rows> rows_;
 };
 
 struct BakeResult {

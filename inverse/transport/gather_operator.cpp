@@ -58,7 +58,7 @@ class NearestGatherPoint {
 namespace {
 
 constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
-constexpr int kPathsPerGatherPoint = 8;
+constexpr int kPathsPerGatherPoint = 32;
 constexpr float kNearField = 8.0F;  // cell radii
 constexpr int kRaysPerGatherPoint = 64;
 constexpr int kMostBounces = 400;
@@ -139,16 +139,22 @@ void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, c
   }
 }
 
-// `first`: the number of the first, of which the others follow.
-SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from, std::size_t first, int rays,
-                           std::uint64_t seed, const NearestGatherPoint& nearest, const renderer::Control& control) {
-  std::vector<std::vector<SparseTransport::Entry>> rows(from.size());
+std::vector<std::size_t> all_of(std::size_t count) {
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from,
+                           std::span<const std::size_t> chosen, int rays, std::uint64_t seed,
+                           const NearestGatherPoint& nearest, const renderer::Control& control) {
+  std::vector<std::vector<SparseTransport::Entry>> rows(chosen.size());
   constexpr std::size_t kBlock = 32;
-  renderer::parallel_for((from.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < std::min(from.size(), (block + 1) * kBlock); ++i) {
+  renderer::parallel_for((chosen.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(chosen.size(), (block + 1) * kBlock); ++i) {
       for (int k = 0; k < rays; ++k) {
-        Sampler sampler(seed, std::uint32_t(first + i), std::uint32_t(k));
-        if (const auto hit = gather(tracer, from[i], sampler)) {
+        Sampler sampler(seed, std::uint32_t(chosen[i]), std::uint32_t(k));
+        if (const auto hit = gather(tracer, from[chosen[i]], sampler)) {
           rows[i].push_back({nearest.find(hit->at), hit->albedo / float(rays)});
         }
       }
@@ -306,23 +312,24 @@ GatherOperator make_gather_points(const RayTracer& tracer, std::span<const Surfa
   gather.nearest =
       std::make_shared<const NearestGatherPoint>(gather.points, typical_spacing(tracer, gather.points.size()));
   fill_cells(gather, all, *gather.nearest);
-  gather.point_from_point =
-      trace_rows(tracer, gather.points, 0, kRaysPerGatherPoint, options.seed + 2, *gather.nearest, control);
+  gather.point_from_point = trace_rows(tracer, gather.points, all_of(gather.points.size()), kRaysPerGatherPoint,
+                                       options.seed + 2, *gather.nearest, control);
   gather.ray_count = gather.points.size() * kRaysPerGatherPoint;
   return gather;
 }
 
 SparseTransport trace_receiver_rows(const RayTracer& tracer, const GatherOperator& gather,
-                                    std::span<const SurfaceSample> receivers, std::size_t first_receiver,
+                                    std::span<const SurfaceSample> receivers, std::span<const std::size_t> chosen,
                                     const GatherOptions& options, const renderer::Control& control) {
-  return trace_rows(tracer, receivers, first_receiver, options.samples, options.seed + 3, *gather.nearest, control);
+  return trace_rows(tracer, receivers, chosen, options.samples, options.seed + 3, *gather.nearest, control);
 }
 
 GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
                                     const GatherOptions& options, const renderer::Control& control) {
   GatherOperator gather = make_gather_points(tracer, receivers, options, control);
   if (gather.points.empty()) return gather;
-  gather.receiver_from_point = trace_receiver_rows(tracer, gather, receivers, 0, options, control);
+  gather.receiver_from_point =
+      trace_receiver_rows(tracer, gather, receivers, all_of(receivers.size()), options, control);
   gather.ray_count += receivers.size() * std::size_t(options.samples);
   return gather;
 }

@@ -47,10 +47,11 @@ struct GatherOptions {
 GatherOperator make_gather_points(const renderer::RayTracer& tracer, std::span<const renderer::SurfaceSample> receivers,
                                   const GatherOptions& options, const renderer::Control& control = {});
 
-// Rows of K_rg: those of `receivers`, whose numbers among all begin with first_receiver.
+// Rows of K_rg: those of receivers[chosen[0]], receivers[chosen[1]] …
 SparseTransport trace_receiver_rows(const renderer::RayTracer& tracer, const GatherOperator& gather,
-                                    std::span<const renderer::SurfaceSample> receivers, std::size_t first_receiver,
-                                    const GatherOptions& options, const renderer::Control& control = {});
+                                    std::span<const renderer::SurfaceSample> receivers,
+                                    std::span<const std::size_t> chosen, const GatherOptions& options,
+                                    const renderer::Control& control = {});
 
 GatherOperator make_gather_operator(const renderer::RayTracer& tracer,
                                     std::span<const renderer::SurfaceSample> receivers, const GatherOptions& options,

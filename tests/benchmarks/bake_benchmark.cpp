@@ -197,8 +197,8 @@ int main(int argc, char** argv) {
               renderer::thread_count());
   std::printf("direct                %.2f s, %.1f M rays/s; Embree alone %.1f: %.0f %%\n", baked.summary.direct_seconds,
               rate / 1e6, raw / 1e6, 100 * rate / raw);
-  std::printf("whole bake            %.2f s: %.2f x direct; %zu gather points\n", baked.seconds,
-              baked.seconds / baked.summary.direct_seconds, baked.summary.gather_points);
+  std::printf("whole bake            %.2f s: %.2f x direct; %zu gather points, %zu records\n", baked.seconds,
+              baked.seconds / baked.summary.direct_seconds, baked.summary.gather_points, baked.summary.records);
   std::printf("noise of indirect     %.2f %%; of a light %.2f %% (median), %.2f %% (90th percentile)\n",
               100 * noise.all, 100 * noise.median, 100 * noise.ninetieth);
   std::printf("against path tracer   %.2f %%\n", 100 * baked.error);

@@ -117,7 +117,8 @@ TEST(GatherOperator, AdjointGivesTheSameLight) {
         for (int c = 0; c < 3; ++c) {
           const float expected = forward[some[k]].channel[c][light];
           EXPECT_GT(expected, 0);
-          EXPECT_NEAR(adjoint[k][c], expected, 2e-4 * expected) << bounces;
+          // Both leave out 1e-4 of the bounces' light altogether, of one receiver some more.
+          EXPECT_NEAR(adjoint[k][c], expected, 5e-4 * expected) << bounces;
         }
       }
       if (bounces == 0) {
