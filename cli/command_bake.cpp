@@ -14,6 +14,7 @@
 #include "cli/transport_options.h"
 #include "cli/usage_error.h"
 #include "inverse/transport/bake_file.h"
+#include "inverse/transport/grid_by_error.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -81,11 +82,11 @@ int run_bake(const BakeCommand& options) {
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   environment_of(stage, options.transport.environment, session);  // refused where a solve would refuse it
   const inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);
-  const inverse::LightGrid grid =
-      inverse::make_light_grid(*stage.tracer, light_grid_options(*stage.scene, options.grid));
+  const inverse::BakeSettings settings = bake_settings(options.transport, options.common);
+  const inverse::LightGrid grid = inverse::choose_light_grid(
+      *stage.tracer, receivers, light_grid_options(*stage.scene, options.grid), settings, session.control());
   session.stop_if_interrupted();
-  inverse::Baker baker(*stage.tracer, receivers, grid, bake_settings(options.transport, options.common),
-                       memory_left(options.memory), session.control());
+  inverse::Baker baker(*stage.tracer, receivers, grid, settings, memory_left(options.memory), session.control());
   const inverse::BakeSummary baked = bake_saying_what_stays(options, baker, session);
   print_summary(session, options, baker.header(), baked);
   return kDone;

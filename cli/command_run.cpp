@@ -15,6 +15,7 @@
 #include "cli/solve_options.h"
 #include "cli/text_output.h"
 #include "inverse/transport/bake_file.h"
+#include "inverse/transport/grid_by_error.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 
@@ -36,7 +37,8 @@ struct RunCommand {
 // The cache lives in its file alone from here on.
 JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const inverse::Target& target,
                       const inverse::SolveProblem& problem, Session& session) {
-  const inverse::LightGrid grid = inverse::make_light_grid(*stage.tracer, problem.grid);
+  const inverse::LightGrid grid =
+      inverse::choose_light_grid(*stage.tracer, target.receivers, problem.grid, problem.bake, session.control());
   inverse::Baker baker(*stage.tracer, target.receivers, grid, problem.bake, memory_left({}), session.control());
   const inverse::BakeSummary summary =
       inverse::bake_to_file(baker, options.folder() / "cache.exr", {}, session.control());

@@ -108,17 +108,21 @@ std::vector<double> parse_numbers(std::string_view text, std::size_t count, cons
   return numbers;
 }
 
-std::array<int, 3> parse_grid(std::string_view text) {
+GridSize parse_grid(std::string_view text) {
+  GridSize size;
+  if (text.ends_with('%')) {
+    size.error = parse_number(text.substr(0, text.size() - 1), kPercent) / 100;
+    return size;
+  }
   const std::vector<std::string_view> parts = split(text);
-  if (parts.size() != 3) refuse(text, "X,Y,Z: three whole numbers with commas between");
-  std::array<int, 3> counts{};
+  if (parts.size() != 3) refuse(text, "X,Y,Z: three whole numbers with commas between, or a percentage: 5%");
   std::int64_t nodes = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    counts[axis] = parse_count(parts[axis], {1, int(kMaxGridNodes)});
-    nodes = std::min(nodes * counts[axis], kMaxGridNodes + 1);
+    size.counts[axis] = parse_count(parts[axis], {1, int(kMaxGridNodes)});
+    nodes = std::min(nodes * size.counts[axis], kMaxGridNodes + 1);
   }
   if (nodes > kMaxGridNodes) refuse(text, fmt::format("at most {} nodes", kMaxGridNodes));
-  return counts;
+  return size;
 }
 
 std::string parse_region_text(const std::string& text) {

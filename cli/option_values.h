@@ -20,6 +20,7 @@ struct NumberRange {
 
 inline constexpr NumberRange kPositive{.min = 0, .min_excluded = true};
 inline constexpr NumberRange kNotNegative{.min = 0};
+inline constexpr NumberRange kPercent{.min = 0, .max = 100, .min_excluded = true};
 inline constexpr NumberRange kZeroToOne{.min = 0, .max = 1};
 
 struct CountRange {
@@ -45,9 +46,13 @@ std::uint64_t parse_seed(std::string_view text);
 // Exactly `count` numbers with commas between.
 std::vector<double> parse_numbers(std::string_view text, std::size_t count, const NumberRange& range);
 
-// "X,Y,Z", each at least 1, and at most kMaxGridNodes nodes together.
+// "X,Y,Z", each at least 1, and at most kMaxGridNodes nodes together; or "E%", the error of interpolation.
+struct GridSize {
+  std::array<int, 3> counts{};
+  double error = 0;  // 0: not given
+};
 inline constexpr std::int64_t kMaxGridNodes = 1'000'000;
-std::array<int, 3> parse_grid(std::string_view text);
+GridSize parse_grid(std::string_view text);
 
 // The name of a node, or six numbers; given back as it is. Numbers that are not six, or not finite, are a fault.
 std::string parse_region_text(const std::string& text);

@@ -38,8 +38,11 @@ inverse::BakeSettings bake_settings(const TransportOptions& transport, const Com
 }
 
 void add_grid_options(CLI::App& command, GridOptions& options) {
-  add_parsed(command, {"--grid", "X,Y,Z", "Lights along x, y and z (default: about 1000 together)"},
-             [&options](const std::string& text) { options.counts = parse_grid(text); });
+  add_parsed(command,
+             {"--grid", "X,Y,Z|E%",
+              "Lights along x, y and z, or as many as make a light between them right to E percent (default: about 700 "
+              "together)"},
+             [&options](const std::string& text) { options.size = parse_grid(text); });
   add_parsed(command,
              {"--region", "NODE|x0,y0,z0,x1,y1,z1",
               "Where lights may stand: the bounds of a node, or a box in metres (default: the whole scene)"},
@@ -47,7 +50,7 @@ void add_grid_options(CLI::App& command, GridOptions& options) {
 }
 
 inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options) {
-  inverse::LightGridOptions grid{.counts = options.counts, .region = {}};
+  inverse::LightGridOptions grid{.counts = options.size.counts, .error = options.size.error};
   if (!options.region.empty()) grid.region = inverse::parse_region(scene, options.region);
   return grid;
 }

@@ -6,6 +6,7 @@
 #include "cli/common_options.h"
 #include "cli/environment_options.h"
 #include "cli/material_options.h"
+#include "cli/option_values.h"
 #include "inverse/transport/light_grid.h"
 #include "inverse/transport/receivers.h"
 #include "inverse/transport/transport_cache.h"
@@ -31,7 +32,7 @@ inverse::BakeSettings bake_settings(const TransportOptions& transport, const Com
 
 // --grid and --region.
 struct GridOptions {
-  std::array<int, 3> counts{};
+  GridSize size;
   std::string region;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "inverse/transport/bake.h"
+#include "inverse/transport/grid_by_error.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::inverse {
@@ -39,7 +40,8 @@ PreparedTransport prepare_transport(const SolveProblem& problem, const std::vect
     check_cache(problem);
     return {load_transport_cache(*problem.cache_file, chosen)};
   }
-  const LightGrid grid = make_light_grid(problem.tracer, problem.grid);
+  const LightGrid grid =
+      choose_light_grid(problem.tracer, problem.target.receivers, problem.grid, problem.bake, control);
   return {bake(problem.tracer, select_receivers(problem.target.receivers, chosen), grid, problem.bake, control).cache};
 }
 

@@ -13,7 +13,6 @@ namespace {
 
 using renderer::Error;
 
-constexpr double kDefaultLights = 700;
 constexpr float kDefaultInset = 0.02F;   // of the scene's extent, on every side
 constexpr float kInsideFraction = 0.6F;  // of probe rays that meet back faces, inside a solid
 constexpr float kTouching = 0.02F;       // of the spacing
@@ -56,7 +55,7 @@ Probe probe(const renderer::RayTracer& tracer, Vec3f position, const std::vector
   return result;
 }
 
-std::array<int, 3> default_counts(Vec3f extent) {
+std::array<int, 3> counts_for(Vec3f extent, double lights) {
   // Spacing from the volume; a flat or thin region counts as a plane or a line.
   double volume = 1;
   int dimensions = 0;
@@ -64,7 +63,7 @@ std::array<int, 3> default_counts(Vec3f extent) {
   for (int a = 0; a < 3; ++a) {
     if (extent[a] > 0.02 * longest) volume *= double(extent[a]), ++dimensions;
   }
-  const double spacing = dimensions > 0 ? std::pow(volume / kDefaultLights, 1.0 / dimensions) : 1;
+  const double spacing = dimensions > 0 ? std::pow(volume / lights, 1.0 / dimensions) : 1;
   std::array<int, 3> counts{};
   for (int a = 0; a < 3; ++a) {
     counts[a] = extent[a] > 0.02 * longest ? std::max(1, int(std::lround(double(extent[a]) / spacing))) : 1;
@@ -134,7 +133,7 @@ std::optional<Box3f> six_numbers(const std::string& text) {
 
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer.bounds()));
-  LightGrid grid = empty_grid(region, options.counts[0] > 0 ? options.counts : default_counts(region.extent()));
+  LightGrid grid = empty_grid(region, options.counts[0] > 0 ? options.counts : counts_for(region.extent(), options.lights));
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
   const std::vector<Vec3f> directions = probe_directions();
   std::vector<Probe> probes(nodes);

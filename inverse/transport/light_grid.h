@@ -23,8 +23,10 @@ struct LightGrid {
 };
 
 struct LightGridOptions {
-  std::array<int, 3> counts{};  // 0, 0, 0: from the region's shape, for about 1000 lights
-  std::optional<Box3f> region;  // default: the scene's bounds, a little inside
+  std::array<int, 3> counts{};       // 0, 0, 0: from the region's shape, for about so many nodes:
+  std::optional<Box3f> region = {};  // default: the scene's bounds, a little inside
+  double lights = 700;
+  double error = 0;  // of interpolation, for choose_light_grid(); 0: whatever comes of the above
 };
 
 // Nodes inside solids, and those that touch a surface, are left out. Error where none is left ("no light possible").

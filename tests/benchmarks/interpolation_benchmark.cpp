@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "inverse/transport/bake.h"
+#include "inverse/transport/grid_by_error.h"
 #include "inverse/transport/light_response.h"
-#include "renderer/core/sampler.h"
 #include "renderer/core/seconds_since.h"
 #include "renderer/io/load_gltf.h"
 
@@ -19,26 +19,7 @@ namespace {
 
 using namespace chiaro;
 using namespace chiaro::inverse;
-using renderer::Sampler;
 using renderer::seconds_since;
-
-// Where a light may stand: its nearest node is not left out.
-std::vector<Vec3f> random_positions(const LightGrid& grid, std::size_t count) {
-  std::vector<Vec3f> positions;
-  for (std::uint32_t i = 0; positions.size() < count; ++i) {
-    Sampler sampler(1, 0, i);
-    const renderer::Vec2f xy = sampler.next_2d();
-    const Vec3f position = grid.region.min + grid.region.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
-    std::size_t node = 0, stride = 1;
-    for (int a = 0; a < 3; ++a) {
-      const int at = int(std::lround((position[a] - grid.origin[a]) / grid.spacing[a]));
-      node += stride * std::size_t(std::clamp(at, 0, grid.counts[a] - 1));
-      stride *= std::size_t(grid.counts[a]);
-    }
-    if (grid.light_of_node[node] >= 0) positions.push_back(position);
-  }
-  return positions;
-}
 
 void print_errors(const char* name, std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
@@ -72,7 +53,7 @@ int main(int argc, char** argv) {
 
   std::vector<double> apart, indirect_apart, whole;
   double direct_seconds = 0, indirect_seconds = 0;
-  for (const Vec3f position : random_positions(grid, count)) {
+  for (const Vec3f position : random_light_positions(grid, count, 1)) {
     const Eigen::Vector3d at(position.x, position.y, position.z);
     auto start = std::chrono::steady_clock::now();
     Column exact = response.direct(at);

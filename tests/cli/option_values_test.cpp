@@ -56,12 +56,15 @@ TEST(CliOptionValues, ListsHaveExactlyTheirLength) {
 }
 
 TEST(CliOptionValues, GridsHaveNodesButNotTooMany) {
-  EXPECT_EQ(parse_grid("12,8,1"), (std::array<int, 3>{12, 8, 1}));
-  for (const char* text :
-       {"0,0,0", "4,0,4", "4,4", "4", "-1,4,4", "1000000,1000000,1000000", "101,100,100", "2.5,2,2"}) {
+  EXPECT_EQ(parse_grid("12,8,1").counts, (std::array<int, 3>{12, 8, 1}));
+  for (const char* text : {"0,0,0", "4,0,4", "4,4", "4", "-1,4,4", "1000000,1000000,1000000", "101,100,100", "2.5,2,2",
+                           "%", "0%", "-1%", "101%", "5,5%", "x%"}) {
     EXPECT_THROW(parse_grid(text), UsageError) << text;
   }
-  EXPECT_EQ(parse_grid("100,100,100"), (std::array<int, 3>{100, 100, 100}));
+  EXPECT_EQ(parse_grid("100,100,100").counts, (std::array<int, 3>{100, 100, 100}));
+  EXPECT_EQ(parse_grid("100,100,100").error, 0);
+  EXPECT_DOUBLE_EQ(parse_grid("2.5%").error, 0.025);
+  EXPECT_EQ(parse_grid("2.5%").counts, (std::array<int, 3>{}));
 }
 
 TEST(CliOptionValues, RegionsAreNamesOrSixNumbers) {
