@@ -300,6 +300,11 @@ float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
   return projected > 0 ? projected / (renderer::kPi * d2 * std::sqrt(d2)) : 0;
 }
 
+bool sees(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
+  if (dot(light - at.position, at.normal) <= 0) return false;
+  return !tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed);
+}
+
 GatherOperator make_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
                                   const GatherOptions& options, const renderer::Control& control) {
   GatherOperator gather;

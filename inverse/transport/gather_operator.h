@@ -80,4 +80,8 @@ std::vector<renderer::Vec3f> indirect_illumination_at(const renderer::RayTracer&
 // Illumination of a surface sample by a unity light if nothing stands between: cosθ / (π d²), 0 below the horizon.
 float unoccluded_illumination(const renderer::SurfaceSample& at, renderer::Vec3f light);
 
+// Whether the light is above the horizon and nothing stands between. seed: as occluded_between.
+bool sees(const renderer::RayTracer& tracer, const renderer::SurfaceSample& at, renderer::Vec3f light,
+          std::uint32_t seed);
+
 }  // namespace chiaro::inverse

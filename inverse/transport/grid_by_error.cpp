@@ -89,10 +89,7 @@ class InterpolationTest {
     std::vector<std::uint8_t> all(lights.size() * samples_.size(), 0);
     renderer::parallel_for(lights.size(), [&](std::size_t l) {
       for (std::size_t i = 0; i < samples_.size(); ++i) {
-        const auto& [position, normal] = samples_[i];
-        if (dot(lights[l] - position, normal) <= 0) continue;
-        const Vec3f from = renderer::offset_point(position, normal);
-        all[l * samples_.size() + i] = tracer_.occluded_between(from, lights[l], std::uint32_t(i)) ? 0 : 1;
+        all[l * samples_.size() + i] = sees(tracer_, samples_[i], lights[l], std::uint32_t(i)) ? 1 : 0;
       }
     });
     return all;

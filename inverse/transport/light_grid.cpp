@@ -133,7 +133,8 @@ std::optional<Box3f> six_numbers(const std::string& text) {
 
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer.bounds()));
-  LightGrid grid = empty_grid(region, options.counts[0] > 0 ? options.counts : counts_for(region.extent(), options.lights));
+  LightGrid grid =
+      empty_grid(region, options.counts[0] > 0 ? options.counts : counts_for(region.extent(), options.lights));
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
   const std::vector<Vec3f> directions = probe_directions();
   std::vector<Probe> probes(nodes);

@@ -91,10 +91,7 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Visibili
     constexpr std::size_t kBlock = 1024;
     renderer::parallel_for((receivers_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
       for (std::size_t i = block * kBlock; i < std::min(receivers_.size(), (block + 1) * kBlock); ++i) {
-        const SurfaceSample& at = receivers_[i];
-        if (dot(light - at.position, at.normal) <= 0) continue;
-        const Vec3f from = renderer::offset_point(at.position, at.normal);
-        visible[i] = tracer_.occluded_between(from, light, std::uint32_t(i)) ? 0 : 1;
+        visible[i] = sees(tracer_, receivers_[i], light, std::uint32_t(i)) ? 1 : 0;
       }
     });
     return visible;
