@@ -99,7 +99,7 @@ class Search {
     for (std::size_t size = best_.size() - 1; size > 1 && !out_of_time(); --size) {
       if (best_[size].lights.empty()) continue;
       const LightEstimates& all = best_[size].lights;
-      const std::vector<Column> columns = evaluate_columns(response_, all, VisibilitySource::kTraced);
+      const std::vector<Column> columns = evaluate_columns(response_, all, Evaluation::kTracedVisibility);
       Candidate least;
       for (std::size_t without = 0; without < all.size(); ++without) {
         Candidate c = refitted_without(all, columns, without);

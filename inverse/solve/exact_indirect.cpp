@@ -39,14 +39,21 @@ ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vecto
       gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
 
 void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
-  for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
-    const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
+  const auto correct_some = [&](std::size_t first, std::size_t count, const auto& illumination) {
     std::vector<Vec3f> positions;
     for (std::size_t l = 0; l < count; ++l) positions.push_back(to_vec3f(lights[first + l].position));
-    const std::vector<LightBlock> exact = indirect_illumination(tracer_, gather_, positions);
+    const auto exact = illumination(tracer_, gather_, positions);
     for (std::size_t l = 0; l < count; ++l) {
       set_correction(response, lights[first + l], exact.size(),
                      [&](std::size_t i, int c) { return exact[i].channel[c][l]; });
+    }
+  };
+  for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
+    const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
+    if (count <= LightQuad::kLanes) {
+      correct_some(first, count, indirect_illumination_of_few);
+    } else {
+      correct_some(first, count, indirect_illumination);
     }
   }
 }

@@ -90,7 +90,7 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
   for (float t = kFarthest; t > kNearest; t /= kStep) {
     const LightEstimates places =
         direct_lights(response, places_in_front(response, darkest, t * response.grid().region.diagonal()));
-    const std::vector<Column> columns = evaluate_columns(response, places, VisibilitySource::kTraced);
+    const std::vector<Column> columns = evaluate_columns(response, places, Evaluation::kTracedVisibility);
     BestInsertion in_front(residual);
     for (std::size_t j = 0; j < places.size(); ++j) in_front.consider(places[j], columns[j]);
     in_front.append_to(proposals);

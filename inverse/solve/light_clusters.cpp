@@ -54,7 +54,7 @@ LightTree make_light_tree(const LightResponse& response, const Observations& obs
                           const LightEstimates& clusters) {
   LightTree result;
   result.representatives = clusters;
-  result.columns = evaluate_columns(response, clusters, VisibilitySource::kTraced);
+  result.columns = evaluate_columns(response, clusters, Evaluation::kTracedVisibility);
   const auto distance = [&](int a, int b) {
     return unity_distance(observations, result.columns[a], result.columns[b]);
   };
@@ -65,7 +65,7 @@ LightTree make_light_tree(const LightResponse& response, const Observations& obs
       merged.add(light, contribution_norm(observations, result.columns[child], light.intensity));
     }
     result.representatives.push_back(merged.light());
-    result.columns.push_back(response.evaluate(merged.light().position, VisibilitySource::kTraced));
+    result.columns.push_back(response.evaluate(merged.light().position, Evaluation::kTracedVisibility));
   };
   result.tree = numerics::build_light_tree(int(clusters.size()), distance, merge);
   return result;

@@ -88,7 +88,7 @@ UnityLights spread_finely(const LightResponse& response, const UnityLights& surv
     spread.nodes.push_back(node);
     spread.lights.push_back({fine_position(grid, coordinates(node, lattice)), Eigen::Array3d::Ones()});
   }
-  spread.columns = evaluate_columns(response, spread.lights, VisibilitySource::kTraced);
+  spread.columns = evaluate_columns(response, spread.lights, Evaluation::kTracedVisibility);
   return spread;
 }
 

@@ -105,17 +105,17 @@ double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stan
 }
 
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
-                                     VisibilitySource visibility) {
+                                     Evaluation evaluation) {
   std::vector<Column> columns(lights.size());
   renderer::parallel_for(lights.size(), [&](std::size_t j) {
-    columns[j] = response.evaluate(lights[j].position, visibility);
+    columns[j] = response.evaluate(lights[j].position, evaluation);
     if (lights[j].correction.size() > 0) columns[j] += lights[j].correction;
   });
   return columns;
 }
 
 Column illumination_of(const LightResponse& response, const LightEstimates& lights) {
-  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   return total_illumination(columns, lights, Eigen::Index(response.receiver_count()));
 }
 

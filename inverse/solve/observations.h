@@ -61,7 +61,7 @@ double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stan
 
 // Columns of all lights with their corrections, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
-                                     VisibilitySource visibility);
+                                     Evaluation evaluation);
 
 // Of all lights together, by traced visibility and with their corrections.
 Column illumination_of(const LightResponse& response, const LightEstimates& lights);

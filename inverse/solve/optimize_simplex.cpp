@@ -42,7 +42,7 @@ SimplexOptimum optimize_simplex(const LightResponse& response, const Observation
   }
   const auto error = [&](const Eigen::VectorXd& parameters) {
     const LightEstimates lights = unpack(parameters);
-    const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+    const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
     return relative_error(observations, total_illumination(columns, lights, observations.wanted.rows()));
   };
   numerics::NelderMeadOptions options;

@@ -27,9 +27,9 @@ class IlluminationResiduals final : public ceres::CostFunction {
     renderer::parallel_for(light_count_, [&](std::size_t j) {
       const Eigen::Vector3d position(parameters[j]);
       if (jacobians != nullptr) {
-        columns[j] = response_.evaluate_with_gradient(position, VisibilitySource::kTraced);
+        columns[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
       } else {
-        columns[j].value = response_.evaluate(position, VisibilitySource::kTraced);
+        columns[j].value = response_.evaluate(position, Evaluation::kTracedVisibility);
       }
       if (start_[j].correction.size() > 0) columns[j].value += start_[j].correction;
     });

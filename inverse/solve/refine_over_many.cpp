@@ -34,7 +34,7 @@ constexpr double kDamping = 1e-9;                   // of the normal matrix' dia
 std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
   std::vector<ColumnWithGradient> columns(lights.size());
   renderer::parallel_for(lights.size(), [&](std::size_t j) {
-    columns[j] = response.evaluate_with_gradient(lights[j].position, VisibilitySource::kTraced);
+    columns[j] = response.evaluate_with_gradient(lights[j].position, Evaluation::kTracedVisibility);
   });
   return columns;
 }
@@ -195,7 +195,7 @@ Eigen::VectorXd solve_with_instruments(const Eigen::MatrixXd& normal, const Eige
 // Returns the relative error left.
 double fit_brightness(const ManyReceivers& many, const Observations& observations, const std::vector<Column>& indirect,
                       LightEstimates& lights) {
-  const std::vector<Column> direct = evaluate_columns(many.response, lights, VisibilitySource::kTraced);
+  const std::vector<Column> direct = evaluate_columns(many.response, lights, Evaluation::kTracedVisibility);
   std::vector<Column> all = direct;
   for (std::size_t j = 0; j < lights.size(); ++j) all[j] += indirect[j];
   const Eigen::Index receivers = observations.wanted.rows(), n = Eigen::Index(lights.size());

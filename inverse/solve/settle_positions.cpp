@@ -14,7 +14,7 @@ class Settling {
   Settling(const LightResponse& response, const Observations& observations, const LightEstimates& start)
       : response_(response),
         observations_(observations),
-        columns_(evaluate_columns(response, start, VisibilitySource::kTraced)),
+        columns_(evaluate_columns(response, start, Evaluation::kTracedVisibility)),
         best_{start, relative_error(observations, total_illumination(columns_, start, observations.wanted.rows())), 0} {
   }
 
@@ -33,7 +33,7 @@ class Settling {
 
  private:
   Column column(std::size_t light, const Eigen::Vector3d& position) const {
-    Column c = response_.evaluate(position, VisibilitySource::kTraced);
+    Column c = response_.evaluate(position, Evaluation::kTracedVisibility);
     if (best_.lights[light].correction.size() > 0) c += best_.lights[light].correction;
     return c;
   }

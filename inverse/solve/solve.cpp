@@ -75,7 +75,7 @@ std::vector<std::size_t> all_indices(std::size_t count) {
 // Brightest contribution first.
 std::vector<FoundLight> found_lights(const LightResponse& response, const Observations& observations,
                                      const LightEstimates& lights) {
-  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   std::vector<double> norm;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     norm.push_back(contribution_norm(observations, columns[j], lights[j].intensity));
@@ -109,7 +109,7 @@ int most_lights(const SolveOptions& options) {
 // Without the lights that the last descent left with less than what anybody sees of them; one always stays.
 LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
                                   const LightEstimates& lights) {
-  const std::vector<Column> columns = evaluate_columns(response, lights, VisibilitySource::kTraced);
+  const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   LightEstimates kept;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], lights[j].intensity);

@@ -6,6 +6,7 @@
 
 #include <nanoflann.hpp>
 
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
 
@@ -61,8 +62,6 @@ constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
 constexpr int kPathsPerGatherPoint = 32;
 constexpr float kNearField = 8.0F;  // cell radii
 constexpr int kRaysPerGatherPoint = 64;
-constexpr int kMostBounces = 400;
-constexpr double kNegligibleTail = 1e-4;  // error of what further bounces add, of the light so far
 
 struct GatherHit {
   SurfaceSample at;
@@ -163,22 +162,8 @@ SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSampl
   return SparseTransport::from_rows(std::move(rows));
 }
 
-double squared_norm(std::span<const LightBlock> blocks) {
-  double sum = 0;
-  for (const LightBlock& block : blocks) {
-    for (const auto& channel : block.channel) {
-      for (const float v : channel) sum += double(v) * double(v);
-    }
-  }
-  return sum;
-}
-
-void add(std::span<LightBlock> sum, std::span<const LightBlock> term) {
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      for (int l = 0; l < kLightBlock; ++l) sum[i].channel[c][l] += term[i].channel[c][l];
-    }
-  }
+std::uint32_t gather_point_seed(std::size_t point, std::size_t light) {
+  return std::uint32_t(point * 0x9e3779b9U + light);
 }
 
 float direct_at(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
@@ -187,15 +172,43 @@ float direct_at(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, s
   return tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed) ? 0 : value;
 }
 
-float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i, Vec3f light,
-                             std::uint32_t seed) {
+// That over which light from there is averaged: a gather point, or all of its cell where the light is close.
+std::span<const SurfaceSample> samples_towards(const GatherOperator& gather, std::size_t i, Vec3f light) {
   const SurfaceSample& point = gather.points[i];
   const float near = kNearField * gather.cell_radius[i];
-  if (length_squared(light - point.position) > near * near) return direct_at(tracer, point, light, seed);
+  if (length_squared(light - point.position) > near * near) return {&point, 1};
+  return {gather.cell_samples.data() + gather.cell_start[i], gather.cell_start[i + 1] - gather.cell_start[i]};
+}
+
+float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i, Vec3f light,
+                             std::uint32_t seed) {
+  const auto samples = samples_towards(gather, i, light);
   float sum = 0;
-  const std::size_t first = gather.cell_start[i], last = gather.cell_start[i + 1];
-  for (std::size_t k = first; k < last; ++k) sum += direct_at(tracer, gather.cell_samples[k], light, seed);
-  return sum / float(last - first);
+  for (const SurfaceSample& at : samples) sum += direct_at(tracer, at, light, seed);
+  return sum / float(samples.size());
+}
+
+DirectTerm direct_term_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i,
+                                       const UnityLight& light) {
+  const Vec3f position = to_vec3f(light.position);
+  const auto samples = samples_towards(gather, i, position);
+  DirectTerm sum;
+  for (const SurfaceSample& at : samples) {
+    const DirectTerm term = unoccluded_term(at, light);
+    if (term.value <= 0 || !sees(tracer, at, position, gather_point_seed(i, 0))) continue;
+    sum.value += term.value;
+    sum.gradient += term.gradient;
+  }
+  return {sum.value / double(samples.size()), sum.gradient / double(samples.size())};
+}
+
+// The receivers' light from the gather points' direct light.
+template <class Lanes>
+std::vector<Lanes> from_gather_points(const GatherOperator& gather, const std::vector<Lanes>& direct) {
+  std::vector<Lanes> result(gather.receiver_from_point.row_count());
+  if (direct.empty()) return result;
+  multiply(gather.receiver_from_point, sum_of_bounces(gather.interreflection, direct, gather.bounces), result);
+  return result;
 }
 
 // In parallel: body(first, last) for parts of 0 … count − 1.
@@ -206,14 +219,14 @@ void for_each_chunk(std::size_t count, const Body& body) {
                          [&](std::size_t chunk) { body(chunk * kPoints, std::min(count, (chunk + 1) * kPoints)); });
 }
 
-std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const GatherOperator& gather,
-                                                std::span<const Vec3f> lights) {
-  std::vector<LightBlock> direct(gather.points.size());
+template <class Lanes>
+std::vector<Lanes> direct_at_gather_points(const RayTracer& tracer, const GatherOperator& gather,
+                                           std::span<const Vec3f> lights) {
+  std::vector<Lanes> direct(gather.points.size());
   for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t l = 0; l < lights.size(); ++l) {
       for (std::size_t i = first; i < last; ++i) {
-        const auto seed = std::uint32_t(i * 0x9e3779b9U + l);
-        const float value = direct_at_gather_point(tracer, gather, i, lights[l], seed);
+        const float value = direct_at_gather_point(tracer, gather, i, lights[l], gather_point_seed(i, l));
         for (auto& channel : direct[i].channel) channel[l] = value;
       }
     }
@@ -221,89 +234,7 @@ std::vector<LightBlock> direct_at_gather_points(const RayTracer& tracer, const G
   return direct;
 }
 
-// Per channel and light of a block.
-struct BlockSums {
-  double channel[3][kLightBlock] = {};
-};
-
-BlockSums inner_products(std::span<const LightBlock> a, std::span<const LightBlock> b) {
-  BlockSums sums;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      for (int l = 0; l < kLightBlock; ++l) {
-        sums.channel[c][l] += double(a[i].channel[c][l]) * double(b[i].channel[c][l]);
-      }
-    }
-  }
-  return sums;
-}
-
-// What follows a bounce, taken for a geometric series.
-struct Tail {
-  BlockSums decay;   // by which factor each bounce shrinks the light
-  double error = 0;  // that of the series' first term, carried on as it would be
-};
-
-Tail tail_after(std::span<const LightBlock> before, std::span<const LightBlock> last) {
-  constexpr double kMost = 0.999;
-  const BlockSums ll = inner_products(last, last), lb = inner_products(last, before),
-                  bb = inner_products(before, before);
-  Tail tail;
-  double squares = 0;
-  for (int c = 0; c < 3; ++c) {
-    for (int l = 0; l < kLightBlock; ++l) {
-      const double b2 = bb.channel[c][l], q = b2 > 0 ? std::clamp(lb.channel[c][l] / b2, 0.0, kMost) : 0;
-      const double next = q / (1 - q);
-      squares += next * next * std::max(0.0, ll.channel[c][l] - 2 * q * lb.channel[c][l] + q * q * b2);
-      tail.decay.channel[c][l] = q;
-    }
-  }
-  tail.error = std::sqrt(squares);
-  return tail;
-}
-
-void add_tail(std::span<LightBlock> sum, std::span<const LightBlock> last, const BlockSums& decay) {
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      for (int l = 0; l < kLightBlock; ++l) {
-        const double q = decay.channel[c][l];
-        sum[i].channel[c][l] += float(q / (1 - q)) * last[i].channel[c][l];
-      }
-    }
-  }
-}
-
-// term + K term + K² term + …, as many as there are bounces. Where all are wanted, what follows once each bounce is the
-// one before but for a factor is a geometric series.
-std::vector<LightBlock> sum_of_bounces(const SparseTransport& point_from_point, std::vector<LightBlock> term,
-                                       int bounces) {
-  std::vector<LightBlock> sum = term, next(term.size());
-  const int most = bounces < 0 ? kMostBounces : bounces;
-  for (int bounce = 1; bounce < most; ++bounce) {
-    multiply(point_from_point, term, next);
-    std::swap(term, next);
-    add(sum, term);
-    if (bounces >= 0) continue;
-    const Tail tail = tail_after(next, term);
-    if (tail.error > kNegligibleTail * std::sqrt(squared_norm(sum))) continue;
-    add_tail(sum, term, tail.decay);
-    break;
-  }
-  return sum;
-}
-
 }  // namespace
-
-float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
-  const Vec3f d = light - at.position;
-  const float d2 = length_squared(d), projected = dot(d, at.normal);
-  return projected > 0 ? projected / (renderer::kPi * d2 * std::sqrt(d2)) : 0;
-}
-
-bool sees(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
-  if (dot(light - at.position, at.normal) <= 0) return false;
-  return !tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed);
-}
 
 GatherOperator make_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
                                   const GatherOptions& options, const renderer::Control& control) {
@@ -317,8 +248,9 @@ GatherOperator make_gather_points(const RayTracer& tracer, std::span<const Surfa
   gather.nearest =
       std::make_shared<const NearestGatherPoint>(gather.points, typical_spacing(tracer, gather.points.size()));
   fill_cells(gather, all, *gather.nearest);
-  gather.point_from_point = trace_rows(tracer, gather.points, all_of(gather.points.size()), kRaysPerGatherPoint,
-                                       options.seed + 2, *gather.nearest, control);
+  gather.interreflection =
+      make_interreflection(trace_rows(tracer, gather.points, all_of(gather.points.size()), kRaysPerGatherPoint,
+                                      options.seed + 2, *gather.nearest, control));
   gather.ray_count = gather.points.size() * kRaysPerGatherPoint;
   return gather;
 }
@@ -341,15 +273,33 @@ GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const Sur
 
 std::vector<LightBlock> illumination_of_gather_points(const RayTracer& tracer, const GatherOperator& gather,
                                                       std::span<const Vec3f> lights) {
-  return sum_of_bounces(gather.point_from_point, direct_at_gather_points(tracer, gather, lights), gather.bounces);
+  return sum_of_bounces(gather.interreflection, direct_at_gather_points<LightBlock>(tracer, gather, lights),
+                        gather.bounces);
 }
 
 std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const Vec3f> lights) {
-  std::vector<LightBlock> result(gather.receiver_from_point.row_count());
-  if (gather.points.empty()) return result;
-  multiply(gather.receiver_from_point, illumination_of_gather_points(tracer, gather, lights), result);
-  return result;
+  return from_gather_points(gather, direct_at_gather_points<LightBlock>(tracer, gather, lights));
+}
+
+std::vector<LightQuad> indirect_illumination_of_few(const RayTracer& tracer, const GatherOperator& gather,
+                                                    std::span<const Vec3f> lights) {
+  return from_gather_points(gather, direct_at_gather_points<LightQuad>(tracer, gather, lights));
+}
+
+std::vector<LightQuad> indirect_illumination_with_gradient(const RayTracer& tracer, const GatherOperator& gather,
+                                                           const UnityLight& light) {
+  std::vector<LightQuad> direct(gather.points.size());
+  for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const DirectTerm term = direct_term_at_gather_point(tracer, gather, i, light);
+      for (auto& channel : direct[i].channel) {
+        channel[0] = float(term.value);
+        for (int a = 0; a < 3; ++a) channel[a + 1] = float(term.gradient[a]);
+      }
+    }
+  });
+  return from_gather_points(gather, direct);
 }
 
 std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather,
@@ -361,7 +311,7 @@ std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather
       for (int c = 0; c < 3; ++c) first[entry.column].channel[c][l] += entry.weight[c];
     }
   }
-  return sum_of_bounces(gather.point_from_point.transposed(gather.points.size()), std::move(first), gather.bounces);
+  return sum_of_bounces(transposed(gather.interreflection), first, gather.bounces);
 }
 
 std::vector<Vec3f> indirect_illumination_at(const RayTracer& tracer, const GatherOperator& gather,
@@ -370,7 +320,7 @@ std::vector<Vec3f> indirect_illumination_at(const RayTracer& tracer, const Gathe
   std::vector<float> direct(gather.points.size());
   for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      direct[i] = direct_at_gather_point(tracer, gather, i, light, std::uint32_t(i * 0x9e3779b9U));
+      direct[i] = direct_at_gather_point(tracer, gather, i, light, gather_point_seed(i, 0));
     }
   });
   LightBlock sum;

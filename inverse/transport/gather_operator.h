@@ -3,8 +3,10 @@
 //
 //   g        gather points: surface points that the receivers' light paths reach
 //   D        direct illumination at the gather points under one light
-//   K_gg     their illumination by each other, one bounce: K_gg[a][b] = albedo-weighted share of b in the hemisphere of
-//   a K_rg     the receivers' illumination by the gather points indirect = K_rg (D + K_gg D + K_gg² D + …)
+//   K_gg     their illumination by each other, one bounce: albedo-weighted shares of the hemisphere
+//   K_rg     the receivers' illumination by the gather points
+//
+//   indirect = K_rg (D + K_gg D + K_gg² D + …)
 //
 // Rays from receivers and gather points go to the nearest gather point of like orientation, with the albedo of the very
 // spot that they hit. A light close to a gather point is averaged over the point's cell: over samples of the surface
@@ -15,7 +17,8 @@
 #include <memory>
 #include <vector>
 
-#include "inverse/transport/sparse_transport.h"
+#include "inverse/transport/direct_light.h"
+#include "inverse/transport/interreflection.h"
 #include "renderer/core/control.h"
 #include "renderer/trace/trace_illumination.h"
 
@@ -29,7 +32,7 @@ struct GatherOperator {
   std::vector<std::size_t> cell_start;
   std::vector<renderer::SurfaceSample> cell_samples;
   std::vector<float> cell_radius;       // metres, root mean square over the cell
-  SparseTransport point_from_point;     // K_gg
+  Interreflection interreflection;      // K_gg
   SparseTransport receiver_from_point;  // K_rg; without rows where they are traced in parts
   std::shared_ptr<const NearestGatherPoint> nearest;
   int bounces = -1;  // as TraceOptions
@@ -66,6 +69,15 @@ std::vector<LightBlock> illumination_of_gather_points(const renderer::RayTracer&
 std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const renderer::Vec3f> lights);
 
+// Up to four, which take a third of the time of a block.
+std::vector<LightQuad> indirect_illumination_of_few(const renderer::RayTracer& tracer, const GatherOperator& gather,
+                                                    std::span<const renderer::Vec3f> lights);
+
+// Indirect illumination of all receivers under one unity light of any kind, for a shadow ray per gather point and
+// little else: lane 0; lanes 1, 2, 3: its derivative by the light's x, y, z (per metre) where no shadow edge moves.
+std::vector<LightQuad> indirect_illumination_with_gradient(const renderer::RayTracer& tracer,
+                                                           const GatherOperator& gather, const UnityLight& light);
+
 // The adjoint: what each gather point gives to up to kLightBlock of the receivers, over all bounces, per direct
 // illumination of 1 that falls on it. One block per gather point; lane l belongs to receivers[l].
 std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather,
@@ -76,12 +88,5 @@ std::vector<LightBlock> importance_of_gather_points(const GatherOperator& gather
 std::vector<renderer::Vec3f> indirect_illumination_at(const renderer::RayTracer& tracer, const GatherOperator& gather,
                                                       std::span<const LightBlock> importance,
                                                       std::size_t receiver_count, renderer::Vec3f light);
-
-// Illumination of a surface sample by a unity light if nothing stands between: cosθ / (π d²), 0 below the horizon.
-float unoccluded_illumination(const renderer::SurfaceSample& at, renderer::Vec3f light);
-
-// Whether the light is above the horizon and nothing stands between. seed: as occluded_between.
-bool sees(const renderer::RayTracer& tracer, const renderer::SurfaceSample& at, renderer::Vec3f light,
-          std::uint32_t seed);
 
 }  // namespace chiaro::inverse

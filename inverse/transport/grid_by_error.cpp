@@ -59,7 +59,7 @@ class InterpolationTest {
     for (std::size_t k = 0; k < positions_.size(); ++k) {
       const double norm = exact_[k].norm();
       if (!(norm > 0)) continue;
-      const Column interpolated = response.evaluate(to_eigen(positions_[k]), VisibilitySource::kInterpolated);
+      const Column interpolated = response.evaluate(to_eigen(positions_[k]), Evaluation::kInterpolated);
       errors.push_back((interpolated - exact_[k]).norm() / norm);
     }
     if (errors.empty()) return 0;

@@ -1,7 +1,6 @@
 #include "inverse/transport/light_response.h"
 
 #include "inverse/transport/eigen_vectors.h"
-#include "inverse/transport/gather_operator.h"
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
 
@@ -11,25 +10,17 @@ namespace {
 using Eigen::Vector3d;
 using renderer::SurfaceSample;
 
-struct DirectTerm {
-  double value;
-  Vector3d gradient;
-};
-
-// cosθ / (π d²) and its gradient in the light's position: with r = x − p, n·r / (π |r|³).
-DirectTerm direct_term(const SurfaceSample& at, const Vector3d& light) {
-  const Vector3d r = light - to_eigen(at.position), n = to_eigen(at.normal);
-  const double projected = n.dot(r);
-  if (projected <= 0) return {0, Vector3d::Zero()};
-  const double d2 = r.squaredNorm(), scale = 1 / (EIGEN_PI * d2 * std::sqrt(d2));
-  return {projected * scale, scale * (n - (3 * projected / d2) * r)};
+// Where nothing is left to interpolate, a light may be of any shape.
+void check_kind(const UnityLight& light, Evaluation evaluation, const GatherOperator* gather) {
+  CHIARO_CHECK(!light.cone || evaluation == Evaluation::kExact);
+  CHIARO_CHECK(gather != nullptr || evaluation != Evaluation::kExact);
 }
 
 }  // namespace
 
 LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<SurfaceSample> receivers,
-                             const TransportCache& cache)
-    : tracer_(tracer), receivers_(std::move(receivers)), cache_(cache) {
+                             const TransportCache& cache, const GatherOperator* gather)
+    : tracer_(tracer), receivers_(std::move(receivers)), cache_(cache), gather_(gather) {
   CHIARO_CHECK(cache.receiver_count == receivers_.size());
 }
 
@@ -83,11 +74,11 @@ std::vector<LightResponse::Weight> LightResponse::interpolation_weights(const Ve
   return weights;
 }
 
-std::vector<double> LightResponse::visibility(const Vector3d& position, VisibilitySource source,
+std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluation evaluation,
                                               const std::vector<Weight>& weights) const {
   std::vector<double> visible(receivers_.size(), 0);
   const Vec3f light = to_vec3f(position);
-  if (source == VisibilitySource::kTraced) {
+  if (evaluation != Evaluation::kInterpolated) {
     constexpr std::size_t kBlock = 1024;
     renderer::parallel_for((receivers_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
       for (std::size_t i = block * kBlock; i < std::min(receivers_.size(), (block + 1) * kBlock); ++i) {
@@ -111,22 +102,44 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Visibili
   return visible;
 }
 
-ColumnWithGradient LightResponse::evaluate_with_gradient(const Vector3d& position, VisibilitySource source) const {
-  const std::vector<Weight> weights = interpolation_weights(position);
-  const std::vector<double> visible = visibility(position, source, weights);
-  ColumnWithGradient column;
-  column.value.resize(Eigen::Index(receivers_.size()), 3);
-  for (Column& g : column.gradient) g.resize(Eigen::Index(receivers_.size()), 3);
-  for (std::size_t i = 0; i < receivers_.size(); ++i) {
-    const auto row = Eigen::Index(i);
-    const DirectTerm direct = visible[i] > 0 ? direct_term(receivers_[i], position) : DirectTerm{0, Vector3d::Zero()};
-    column.value.row(row).setConstant(visible[i] * direct.value);
-    for (int a = 0; a < 3; ++a) column.gradient[a].row(row).setConstant(visible[i] * direct.gradient[a]);
-    for (const Weight& w : weights) {
-      const Vector3d indirect = to_eigen(cache_.indirect[w.light * cache_.receiver_count + i]);
-      column.value.row(row) += w.value * indirect.transpose();
-      for (int a = 0; a < 3; ++a) column.gradient[a].row(row) += w.gradient[a] * indirect.transpose();
+// Lane 0 of each block is the value, the others the derivatives.
+ColumnWithGradient LightResponse::gathered(const UnityLight& light) const {
+  const std::vector<LightQuad> indirect = indirect_illumination_with_gradient(tracer_, *gather_, light);
+  const auto column_of = [&](int lane) {
+    Column column(Eigen::Index(indirect.size()), 3);
+    for (std::size_t i = 0; i < indirect.size(); ++i) {
+      for (int c = 0; c < 3; ++c) column(Eigen::Index(i), c) = double(indirect[i].channel[c][lane]);
     }
+    return column;
+  };
+  return {column_of(0), {column_of(1), column_of(2), column_of(3)}};
+}
+
+ColumnWithGradient LightResponse::indirect_with_gradient(const std::vector<Weight>& weights) const {
+  ColumnWithGradient column{indirect(weights), {}};
+  const auto rows = Eigen::Index(receivers_.size());
+  for (int a = 0; a < 3; ++a) {
+    column.gradient[a] = Column::Zero(rows, 3);
+    for (const Weight& w : weights) {
+      const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
+      for (Eigen::Index i = 0; i < rows; ++i)
+        column.gradient[a].row(i) += w.gradient[a] * to_eigen(indirect[i]).transpose();
+    }
+  }
+  return column;
+}
+
+ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light, Evaluation evaluation) const {
+  check_kind(light, evaluation, gather_);
+  const bool exact = evaluation == Evaluation::kExact;
+  const std::vector<Weight> weights = exact ? std::vector<Weight>() : interpolation_weights(light.position);
+  const std::vector<double> visible = visibility(light.position, evaluation, weights);
+  ColumnWithGradient column = exact ? gathered(light) : indirect_with_gradient(weights);
+  for (std::size_t i = 0; i < receivers_.size(); ++i) {
+    if (!(visible[i] > 0)) continue;
+    const DirectTerm direct = unoccluded_term(receivers_[i], light);
+    column.value.row(Eigen::Index(i)).array() += visible[i] * direct.value;
+    for (int a = 0; a < 3; ++a) column.gradient[a].row(Eigen::Index(i)).array() += visible[i] * direct.gradient[a];
   }
   return column;
 }
@@ -156,14 +169,16 @@ void LightResponse::add_direct(const Vector3d& position, const std::vector<doubl
 
 Column LightResponse::direct(const Vector3d& position) const {
   Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
-  add_direct(position, visibility(position, VisibilitySource::kTraced, {}), column);
+  add_direct(position, visibility(position, Evaluation::kTracedVisibility, {}), column);
   return column;
 }
 
-Column LightResponse::evaluate(const Vector3d& position, VisibilitySource source) const {
-  const std::vector<Weight> weights = interpolation_weights(position);
+Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) const {
+  if (evaluation == Evaluation::kExact) return evaluate_with_gradient(light, evaluation).value;
+  check_kind(light, evaluation, gather_);
+  const std::vector<Weight> weights = interpolation_weights(light.position);
   Column column = indirect(weights);
-  add_direct(position, visibility(position, source, weights), column);
+  add_direct(light.position, visibility(light.position, evaluation, weights), column);
   return column;
 }
 

@@ -4,12 +4,12 @@
 //   φ(x) = V cosθ / (π d²) + N(x)
 //
 // The direct term is taken at x exactly, its visibility V traced or interpolated between grid lights; the indirect term
-// N is interpolated between grid lights. Gradients hold V fixed.
+// N is gathered for x itself or interpolated between grid lights. Gradients hold V fixed.
 
 #include <Eigen/Core>
 
+#include "inverse/transport/gather_operator.h"
 #include "inverse/transport/transport_cache.h"
-#include "renderer/trace/trace_illumination.h"
 
 namespace chiaro::inverse {
 
@@ -20,21 +20,26 @@ struct ColumnWithGradient {
   std::array<Column, 3> gradient;  // by x, y, z; per metre
 };
 
-enum class VisibilitySource : std::uint8_t { kTraced, kInterpolated };
+enum class Evaluation : std::uint8_t {
+  kInterpolated,      // V and N between grid lights
+  kTracedVisibility,  // V traced, N between grid lights
+  kExact,             // V traced, N gathered; the only one for spots
+};
 
 class LightResponse {
  public:
-  // `cache` holds the columns of `receivers` only, in their order. Keeps references to tracer and cache.
+  // `cache` holds the columns of `receivers` only, in their order. `gather`, for exact evaluations, has their rows.
+  // Keeps references to tracer, cache and gather.
   LightResponse(const renderer::RayTracer& tracer, std::vector<renderer::SurfaceSample> receivers,
-                const TransportCache& cache);
+                const TransportCache& cache, const GatherOperator* gather = nullptr);
 
   std::size_t receiver_count() const { return receivers_.size(); }
   const std::vector<renderer::SurfaceSample>& receivers() const { return receivers_; }
   const LightGrid& grid() const { return cache_.grid; }
 
   // Positions outside the grid's region take the indirect part of the nearest point of its border.
-  Column evaluate(const Eigen::Vector3d& position, VisibilitySource visibility) const;
-  ColumnWithGradient evaluate_with_gradient(const Eigen::Vector3d& position, VisibilitySource visibility) const;
+  Column evaluate(const UnityLight& light, Evaluation evaluation) const;
+  ColumnWithGradient evaluate_with_gradient(const UnityLight& light, Evaluation evaluation) const;
   // The direct part alone, visibility traced; the indirect part alone.
   Column direct(const Eigen::Vector3d& position) const;
   Column interpolated_indirect(const Eigen::Vector3d& position) const;
@@ -51,13 +56,16 @@ class LightResponse {
   };
   std::vector<Weight> interpolation_weights(const Eigen::Vector3d& position) const;
   Column indirect(const std::vector<Weight>& weights) const;
+  ColumnWithGradient indirect_with_gradient(const std::vector<Weight>& weights) const;
+  ColumnWithGradient gathered(const UnityLight& light) const;
   void add_direct(const Eigen::Vector3d& position, const std::vector<double>& visible, Column& column) const;
-  std::vector<double> visibility(const Eigen::Vector3d& position, VisibilitySource source,
+  std::vector<double> visibility(const Eigen::Vector3d& position, Evaluation evaluation,
                                  const std::vector<Weight>& weights) const;
 
   const renderer::RayTracer& tracer_;
   std::vector<renderer::SurfaceSample> receivers_;
   const TransportCache& cache_;
+  const GatherOperator* gather_;
 };
 
 }  // namespace chiaro::inverse

@@ -35,15 +35,26 @@ class SparseTransport {
   std::vector<Entry> entries_;  // and some beyond the last, so that products may read ahead
 };
 
-// Lights are handled this many at a time.
-inline constexpr int kLightBlock = 16;
-
-// Illumination of one point by a block of lights, per channel.
-struct alignas(64) LightBlock {
-  float channel[3][kLightBlock] = {};
+// Illumination of one point by several lights side by side, per channel.
+template <int Lanes>
+struct alignas(4 * Lanes) LightLanes {
+  static constexpr int kLanes = Lanes;
+  float channel[3][Lanes] = {};
 };
 
-// result[i] = Σ_k row(i)[k].weight · in[column], per channel and light.
+// A bake handles lights this many at a time …
+inline constexpr int kLightBlock = 16;
+using LightBlock = LightLanes<kLightBlock>;
+// … and one light with its derivatives, or up to four lights, take less.
+using LightQuad = LightLanes<4>;
+
+// result[i] = Σ_k row(i)[k].weight · in[column], per channel and light, for all rows.
 void multiply(const SparseTransport& matrix, std::span<const LightBlock> in, std::span<LightBlock> result);
+void multiply(const SparseTransport& matrix, std::span<const LightQuad> in, std::span<LightQuad> result);
+// The same for the rows from `first` on, as many as there are results; in one thread.
+void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const LightBlock> in,
+                   std::span<LightBlock> result);
+void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const LightQuad> in,
+                   std::span<LightQuad> result);
 
 }  // namespace chiaro::inverse

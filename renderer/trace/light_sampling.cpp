@@ -34,7 +34,7 @@ struct PunctualVisitor {
 
   PunctualSample operator()(const SpotLight& light) const {
     PunctualSample s = arriving(light.position, light.intensity);
-    s.irradiance *= cone_falloff(light, -dot(s.to_light, light.direction));
+    s.irradiance *= spot_cone(light).falloff(-dot(s.to_light, light.direction)).value;
     return s;
   }
 
@@ -51,13 +51,6 @@ struct PunctualVisitor {
     const float distance = std::sqrt(d2);
     return {d / distance, distance, intensity / d2};
   }
-
-  // KHR_lights_punctual's recommended spot falloff.
-  static float cone_falloff(const SpotLight& light, float cosine) {
-    const float cos_inner = std::cos(light.inner_cone_angle), cos_outer = std::cos(light.outer_cone_angle);
-    const float t = std::clamp((cosine - cos_outer) / std::max(1e-3F, cos_inner - cos_outer), 0.0F, 1.0F);
-    return t * t;
-  }
 };
 
 // Mean luminance over a triangle of a texture, from a few points; never zero where anything may be emitted.
@@ -70,6 +63,16 @@ float mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle
 }
 
 }  // namespace
+
+SpotCone spot_cone(const SpotLight& light) {
+  return {light.direction, std::cos(light.inner_cone_angle), std::cos(light.outer_cone_angle)};
+}
+
+SpotCone::Falloff SpotCone::falloff(float cosine) const {
+  const float width = std::max(1e-3F, cos_inner - cos_outer);
+  const float t = std::clamp((cosine - cos_outer) / width, 0.0F, 1.0F);
+  return {t * t, t > 0 && t < 1 ? 2 * t / width : 0};
+}
 
 PunctualSample sample_punctual(const Light& light, Vec3f point) { return std::visit(PunctualVisitor{point}, light); }
 

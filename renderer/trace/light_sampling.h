@@ -17,6 +17,18 @@ struct PunctualSample {
   Vec3f irradiance;    // lux / cd·m⁻² per channel on a plane across to_light: intensity / distance²
 };
 
+// A spot's light by the cosine of the angle from its axis: KHR_lights_punctual's recommended falloff.
+struct SpotCone {
+  Vec3f axis;  // unit, from the light outwards
+  float cos_inner, cos_outer;
+
+  struct Falloff {
+    float value, derivative;  // 1 within the inner cone; by the cosine
+  };
+  Falloff falloff(float cosine) const;
+};
+SpotCone spot_cone(const SpotLight& light);
+
 // Nothing from an environment, which is no punctual light.
 PunctualSample sample_punctual(const Light& light, Vec3f point);
 

@@ -47,26 +47,22 @@ int main(int argc, char** argv) {
   const LightGrid grid = make_light_grid(tracer, grid_options);
   const BakeSettings settings{.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"};
   const TransportCache cache = bake(tracer, receivers, grid, settings).cache;
-  const LightResponse response(tracer, receivers.samples, cache);
   const GatherOperator gather =
       make_gather_operator(tracer, receivers.samples, {.samples = 256, .bounces = -1, .seed = 0});
+  const LightResponse response(tracer, receivers.samples, cache, &gather);
 
   std::vector<double> apart, indirect_apart, whole;
-  double direct_seconds = 0, indirect_seconds = 0;
+  double direct_seconds = 0, exact_seconds = 0;
   for (const Vec3f position : random_light_positions(grid, count, 1)) {
     const Eigen::Vector3d at(position.x, position.y, position.z);
     auto start = std::chrono::steady_clock::now();
-    Column exact = response.direct(at);
+    const Column direct = response.direct(at);
     direct_seconds += seconds_since(start) / double(count);
     start = std::chrono::steady_clock::now();
-    const auto blocks = indirect_illumination(tracer, gather, {&position, 1});
-    indirect_seconds += seconds_since(start) / double(count);
-    Column indirect(exact.rows(), 3);
-    for (Eigen::Index i = 0; i < exact.rows(); ++i) {
-      for (int c = 0; c < 3; ++c) indirect(i, c) = double(blocks[std::size_t(i)].channel[c][0]);
-    }
-    exact += indirect;
-    apart.push_back((response.evaluate(at, VisibilitySource::kInterpolated) - exact).norm() / exact.norm());
+    const Column exact = response.evaluate(at, Evaluation::kExact);
+    exact_seconds += seconds_since(start) / double(count);
+    const Column indirect = exact - direct;
+    apart.push_back((response.evaluate(at, Evaluation::kInterpolated) - exact).norm() / exact.norm());
     indirect_apart.push_back((response.interpolated_indirect(at) - indirect).norm() / exact.norm());
     whole.push_back((response.interpolated_columns(at) - exact).norm() / exact.norm());
   }
@@ -75,7 +71,7 @@ int main(int argc, char** argv) {
   print_errors("visibility and indirect apart", apart);
   print_errors("  of it by indirect light", indirect_apart);
   print_errors("whole columns, as published", whole);
-  std::printf("exact: %.2f ms, direct %.2f and indirect %.2f\n", 1e3 * (direct_seconds + indirect_seconds),
-              1e3 * direct_seconds, 1e3 * indirect_seconds);
+  std::printf("exact: %.2f ms, with its derivatives; direct alone %.2f ms\n", 1e3 * exact_seconds,
+              1e3 * direct_seconds);
   return 0;
 }

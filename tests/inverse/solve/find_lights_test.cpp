@@ -25,7 +25,7 @@ using tests::positions_of;
 double spacing_of(const DirectProblem& problem) { return double(max_component(problem.response().grid().spacing)); }
 
 double contribution(const DirectProblem& problem, const LightEstimate& light) {
-  const Column column = problem.response().evaluate(light.position, VisibilitySource::kTraced);
+  const Column column = problem.response().evaluate(light.position, Evaluation::kTracedVisibility);
   return contribution_norm(problem.observations(), column, light.intensity);
 }
 
@@ -134,7 +134,7 @@ TEST(RefineJoint, NeverGetsWorseAndStaysInBounds) {
   const std::vector<LightEstimates> starts{{{{0.3, 2.8, 0.3}, {1, 1, 1}}},
                                            {{{3.9, 0.2, 3.9}, {50, 0, 0}}, {{2, 2, 2}, {1, 1, 1}}}};
   for (const LightEstimates& start : starts) {
-    const auto columns = evaluate_columns(problem.response(), start, VisibilitySource::kTraced);
+    const auto columns = evaluate_columns(problem.response(), start, Evaluation::kTracedVisibility);
     const double before = relative_error(problem.observations(),
                                          total_illumination(columns, start, problem.observations().wanted.rows()));
     const JointRefinement refined = refine_joint(problem.response(), problem.observations(), start);
@@ -174,9 +174,10 @@ TEST(SettlePositions, GoesOnWhereDescentStopsAndIsNeverWorse) {
   const DirectProblem problem(known);
   LightEstimates start = known;
   for (LightEstimate& light : start) light.position += Vector3d(0.02, -0.015, 0.02);
-  const double before = relative_error(
-      problem.observations(), total_illumination(evaluate_columns(problem.response(), start, VisibilitySource::kTraced),
-                                                 start, problem.observations().wanted.rows()));
+  const double before =
+      relative_error(problem.observations(),
+                     total_illumination(evaluate_columns(problem.response(), start, Evaluation::kTracedVisibility),
+                                        start, problem.observations().wanted.rows()));
   const SettledLights settled =
       settle_positions(problem.response(), problem.observations(), start, 0.003 * problem.diagonal());
   EXPECT_LT(settled.error, 0.1 * before);

@@ -22,7 +22,7 @@ LightEstimates places() {
 
 TEST(FitIntensities, RecoversThoseThatMadeTheTarget) {
   const DirectProblem problem(places());
-  const auto columns = evaluate_columns(problem.response(), places(), VisibilitySource::kTraced);
+  const auto columns = evaluate_columns(problem.response(), places(), Evaluation::kTracedVisibility);
   const IntensityFit fit = fit_intensities(problem.observations(), columns);
   ASSERT_EQ(fit.intensity.size(), 5U);
   for (std::size_t j = 0; j < 5; ++j) {
@@ -40,7 +40,7 @@ TEST(FitIntensities, IsTheConstrainedMinimumOfANoisyTarget) {
     observations.sqrt_weight[i] = i % 5 == 0 ? 0 : 0.2 + double(sampler.next_1d());
   }
   const LightEstimates start = places();
-  const auto columns = evaluate_columns(problem.response(), start, VisibilitySource::kTraced);
+  const auto columns = evaluate_columns(problem.response(), start, Evaluation::kTracedVisibility);
   const IntensityFit fit = fit_intensities(observations, columns);
   LightEstimates lights = start;
   for (std::size_t j = 0; j < 5; ++j) lights[j].intensity = fit.intensity[j];

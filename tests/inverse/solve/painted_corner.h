@@ -72,8 +72,8 @@ class DirectProblem {
                  .cache;
     response_.emplace(corner_.tracer(), samples_, cache_);
     exact_.emplace(corner_.tracer(), samples_, cache_.settings);
-    observations_.wanted = total_illumination(evaluate_columns(*response_, lights, VisibilitySource::kTraced), lights,
-                                              Eigen::Index(count));
+    observations_.wanted = total_illumination(evaluate_columns(*response_, lights, Evaluation::kTracedVisibility),
+                                              lights, Eigen::Index(count));
     observations_.sqrt_weight = Eigen::VectorXd::Ones(Eigen::Index(count));
     observations_.stands_for = Eigen::VectorXd::Ones(Eigen::Index(count));
     observations_.target = observations_.wanted;

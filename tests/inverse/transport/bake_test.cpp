@@ -92,14 +92,6 @@ TEST(GatherOperator, WithoutBouncesBringsNothing) {
   EXPECT_EQ(gather.ray_count, 0U);
 }
 
-TEST(GatherOperator, UnoccludedIlluminationIsItsClosedForm) {
-  const SurfaceSample at{{1, 2, 3}, {0, 1, 0}};
-  EXPECT_NEAR(unoccluded_illumination(at, {1, 4, 3}), 1 / (4 * M_PI), 1e-7);
-  EXPECT_NEAR(unoccluded_illumination(at, {4, 6, 3}), 0.8 / (25 * M_PI), 1e-8);
-  EXPECT_EQ(unoccluded_illumination(at, {1, 1, 3}), 0);
-  EXPECT_EQ(unoccluded_illumination(at, {5, 2, 3}), 0);
-}
-
 TEST(GatherOperator, AdjointGivesTheSameLight) {
   const Scene scene = test::corner_with_ball();
   const RayTracer tracer(scene);

@@ -43,20 +43,23 @@ class ResponseOfARoom : public ::testing::Test {
   const Receivers receivers_ = make_receivers(scene_, {.max_edge = 1});
   const LightGrid grid_ = make_light_grid(tracer_, {.counts = {4, 3, 5}, .region = {}});
   const TransportCache cache_ = bake(tracer_, receivers_, grid_, settings(8, 2)).cache;
-  const LightResponse response_{tracer_, receivers_.samples, cache_};
+  const GatherOperator gather_ = make_gather_operator(tracer_, receivers_.samples, {.samples = 64});
+  const LightResponse response_{tracer_, receivers_.samples, cache_, &gather_};
 };
 
 TEST_F(ResponseOfARoom, GradientEqualsCentralDifferences) {
-  constexpr double kStep = 1e-4;
   for (std::uint32_t k = 0; k < 12; ++k) {
     const Vector3d x = random_position(k, grid_.region);
-    for (const auto visibility : {VisibilitySource::kTraced, VisibilitySource::kInterpolated}) {
-      const ColumnWithGradient at = response_.evaluate_with_gradient(x, visibility);
+    for (const auto evaluation : {Evaluation::kTracedVisibility, Evaluation::kInterpolated, Evaluation::kExact}) {
+      // Gathered light is in floats.
+      const bool gathered = evaluation == Evaluation::kExact;
+      const double step = gathered ? 1e-3 : 1e-4, most = gathered ? 1e-2 : 1e-4;
+      const ColumnWithGradient at = response_.evaluate_with_gradient(x, evaluation);
       for (int a = 0; a < 3; ++a) {
-        const Column plus = response_.evaluate_with_gradient(x + kStep * Vector3d::Unit(a), visibility).value;
-        const Column minus = response_.evaluate_with_gradient(x - kStep * Vector3d::Unit(a), visibility).value;
-        const Column difference = (plus - minus) / (2 * kStep);
-        EXPECT_LT((difference - at.gradient[std::size_t(a)]).norm(), 1e-4 * at.gradient[std::size_t(a)].norm())
+        const Column plus = response_.evaluate_with_gradient(Vector3d(x + step * Vector3d::Unit(a)), evaluation).value;
+        const Column minus = response_.evaluate_with_gradient(Vector3d(x - step * Vector3d::Unit(a)), evaluation).value;
+        const Column difference = (plus - minus) / (2 * step);
+        EXPECT_LT((difference - at.gradient[std::size_t(a)]).norm(), most * at.gradient[std::size_t(a)].norm())
             << "position " << k << ", axis " << a;
       }
     }
@@ -66,10 +69,10 @@ TEST_F(ResponseOfARoom, GradientEqualsCentralDifferences) {
 TEST_F(ResponseOfARoom, EveryWayToEvaluateAgrees) {
   for (std::uint32_t k = 100; k < 112; ++k) {
     const Vector3d x = random_position(k, grid_.region);
-    const Column value = response_.evaluate(x, VisibilitySource::kTraced);
-    const Column with_gradient = response_.evaluate_with_gradient(x, VisibilitySource::kTraced).value;
+    const Column value = response_.evaluate(x, Evaluation::kTracedVisibility);
+    const Column with_gradient = response_.evaluate_with_gradient(x, Evaluation::kTracedVisibility).value;
     EXPECT_LT((value - with_gradient).norm(), 1e-5 * value.norm());
-    EXPECT_LT((value - response_.evaluate(x, VisibilitySource::kInterpolated)).norm(), 1e-5 * value.norm());
+    EXPECT_LT((value - response_.evaluate(x, Evaluation::kInterpolated)).norm(), 1e-5 * value.norm());
     EXPECT_GT(response_.interpolated_indirect(x).minCoeff(), 0);
   }
 }
@@ -78,8 +81,9 @@ TEST_F(ResponseOfARoom, AtANodeItIsTheBakedColumn) {
   for (const std::size_t light : {std::size_t{0}, grid_.positions.size() / 2, grid_.positions.size() - 1}) {
     const Vec3f p = grid_.positions[light];
     const Column baked = response_.grid_column(light);
-    EXPECT_LT((response_.evaluate({p.x, p.y, p.z}, VisibilitySource::kTraced) - baked).norm(), 1e-5 * baked.norm());
-    EXPECT_LT((response_.evaluate({p.x, p.y, p.z}, VisibilitySource::kInterpolated) - baked).norm(),
+    EXPECT_LT((response_.evaluate(Vector3d{p.x, p.y, p.z}, Evaluation::kTracedVisibility) - baked).norm(),
+              1e-5 * baked.norm());
+    EXPECT_LT((response_.evaluate(Vector3d{p.x, p.y, p.z}, Evaluation::kInterpolated) - baked).norm(),
               1e-5 * baked.norm());
   }
 }
@@ -88,13 +92,44 @@ TEST_F(ResponseOfARoom, DirectPartIsTheClosedForm) {
   const TransportCache direct = bake(tracer_, receivers_, grid_, settings(1, 0)).cache;
   const LightResponse response(tracer_, receivers_.samples, direct);
   const Vec3f lamp{1.3F, 1.1F, 2.6F};
-  const Column column = response.evaluate({lamp.x, lamp.y, lamp.z}, VisibilitySource::kTraced);
+  const Column column = response.evaluate(Vector3d{lamp.x, lamp.y, lamp.z}, Evaluation::kTracedVisibility);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     const SurfaceSample& at = receivers_.samples[i];
     const Vec3f d = lamp - at.position;
     const double expected = double(dot(d, at.normal)) / (M_PI * std::pow(double(length(d)), 3));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(column(Eigen::Index(i), c), expected, 1e-5 * expected);
   }
+}
+
+// Room of the fixture; a spot's light is what the path tracer says, too.
+TEST_F(ResponseOfARoom, ExactEvaluationIsWhatIlluminateTraces) {
+  constexpr int kPaths = 4096;
+  renderer::PointLight lamp;
+  lamp.position = {1.3F, 1.1F, 2.6F};
+  lamp.intensity = {1, 1, 1};
+  renderer::SpotLight spot;
+  spot.position = {2.2F, 2.1F, 1.4F};
+  spot.direction = normalize(Vec3f{-0.4F, -1, 0.3F});
+  spot.intensity = {1, 1, 1};
+  spot.inner_cone_angle = 0.3F;
+  spot.outer_cone_angle = 0.9F;
+  const auto expect_as_traced = [&](const renderer::Light& light, const UnityLight& unity) {
+    const auto traced = trace_illumination(tracer_, receivers_.samples, {light}, {kPaths, -1, 11, false});
+    const Column exact = response_.evaluate(unity, Evaluation::kExact);
+    double difference = 0, noise = 0, norm = 0;
+    for (std::size_t i = 0; i < receivers_.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const double expected = double(traced.value[i][c]);
+        difference += std::pow(exact(Eigen::Index(i), c) - expected, 2);
+        noise += std::pow(double(traced.standard_error[i][c]), 2);
+        norm += expected * expected;
+      }
+    }
+    // Ours is of 64 rays and 2048 gather points.
+    EXPECT_LT(std::sqrt(difference / norm), 3 * std::sqrt(noise / norm) + 0.02);
+  };
+  expect_as_traced(lamp, Vector3d(1.3F, 1.1F, 2.6F));
+  expect_as_traced(spot, {Vector3d(2.2F, 2.1F, 1.4F), spot_cone(spot)});
 }
 
 // A cache of one receiver whose indirect part is a function of the light's position.
@@ -141,7 +176,7 @@ TEST(LightResponse, WeightsSumToOneEverywhereAlsoNearLeftOutNodes) {
       const Vector3d x = random_position(k, around);
       const Column column = response.interpolated_indirect(x);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(column(0, c), c + 1, 1e-9);
-      const ColumnWithGradient with = response.evaluate_with_gradient(x, VisibilitySource::kInterpolated);
+      const ColumnWithGradient with = response.evaluate_with_gradient(x, Evaluation::kInterpolated);
       EXPECT_LT((with.value - column).norm(), 1e-9);
       for (const Column& g : with.gradient) EXPECT_LT(g.norm(), 1e-9);
     }
@@ -157,7 +192,7 @@ TEST(LightResponse, ReproducesLinearFieldsAndTheirSlopes) {
   const Box3f nodes{{0.51F, 0.51F, 0.51F}, {3.49F, 2.49F, 4.49F}};
   for (std::uint32_t k = 0; k < 200; ++k) {
     const Vector3d x = random_position(k, nodes);
-    const ColumnWithGradient at = response.evaluate_with_gradient(x, VisibilitySource::kInterpolated);
+    const ColumnWithGradient at = response.evaluate_with_gradient(x, Evaluation::kInterpolated);
     EXPECT_NEAR(at.value(0, 0), x.x(), 1e-6);
     EXPECT_NEAR(at.value(0, 1), 1 + 2 * x.y(), 1e-6);
     EXPECT_NEAR(at.value(0, 2), x.sum(), 1e-6);
@@ -173,7 +208,7 @@ TEST(LightResponse, BeyondTheGridTakesItsBorder) {
   const RayTracer tracer(scene);
   const TransportCache cache = cache_of(regular_grid({}), [](Vec3f p) { return p; });
   const LightResponse response(tracer, receiver_below(), cache);
-  const ColumnWithGradient at = response.evaluate_with_gradient({-3, 1.25, 9}, VisibilitySource::kInterpolated);
+  const ColumnWithGradient at = response.evaluate_with_gradient(Vector3d{-3, 1.25, 9}, Evaluation::kInterpolated);
   EXPECT_NEAR(at.value(0, 0), 0.5, 1e-6);
   EXPECT_NEAR(at.value(0, 1), 1.25, 1e-6);
   EXPECT_NEAR(at.value(0, 2), 4.5, 1e-6);
@@ -193,7 +228,7 @@ TEST(LightResponse, TracedVisibilityKnowsShadows) {
   cache.visibility.assign(2 * grid.positions.size(), 1);
   cache.indirect.assign(2 * grid.positions.size(), Vec3f{});
   const LightResponse response(tracer, floor, cache);
-  const Column column = response.evaluate({2.2, 2.5, 1.8}, VisibilitySource::kTraced);
+  const Column column = response.evaluate(Vector3d{2.2, 2.5, 1.8}, Evaluation::kTracedVisibility);
   EXPECT_EQ(column(0, 0), 0);  // under the ball
   EXPECT_GT(column(1, 0), 0);
 }

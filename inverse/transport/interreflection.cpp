@@ -1,0 +1,177 @@
+#include "inverse/transport/interreflection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/core/control.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr double kErrorBound = 1e-3;  // relative, of what is left
+constexpr double kLeastRadius = 0.05, kMostRadius = 0.999;
+constexpr double kMostImaginary = 0.95;   // of the spectral radius
+constexpr int kWarmUp = 8, kPowers = 16;  // of K, for its spectral radius
+
+// Of an ellipse with semi-axes a and b.
+double focal_distance(double a, double b) { return std::sqrt(a * a - b * b); }
+
+// By how much a step shrinks the error.
+double convergence_factor(double real, double imaginary) {
+  const double f = focal_distance(real, imaginary);
+  return (real + imaginary) / (1 + std::sqrt(1 - f * f));
+}
+
+int steps_needed(const Interreflection& k) {
+  double slowest = 0;
+  for (int c = 0; c < 3; ++c) slowest = std::max(slowest, convergence_factor(k.spectral_radius[c], k.imaginary[c]));
+  return int(std::ceil(std::log(kErrorBound / 2) / std::log(slowest)));
+}
+
+template <class Lanes>
+std::vector<Lanes> first_terms(const SparseTransport& one_bounce, const std::vector<Lanes>& direct, int count) {
+  std::vector<Lanes> sum = direct, term = direct, next(direct.size());
+  for (int bounce = 1; bounce < count; ++bounce) {
+    multiply(one_bounce, term, next);
+    std::swap(term, next);
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        for (int l = 0; l < Lanes::kLanes; ++l) sum[i].channel[c][l] += term[i].channel[c][l];
+      }
+    }
+  }
+  return sum;
+}
+
+// α and β of the next step, per channel.
+class StepSizes {
+ public:
+  explicit StepSizes(const Interreflection& k) {
+    for (int c = 0; c < 3; ++c) focus_[c] = focal_distance(k.spectral_radius[c], k.imaginary[c]);
+  }
+
+  void advance() {
+    for (int c = 0; c < 3; ++c) {
+      const double before = ratio_[c];
+      ratio_[c] = first_ ? focus_[c] : 1 / (2 / focus_[c] - before);
+      momentum[c] = first_ ? 0 : float(ratio_[c] * before);
+      gain[c] = first_ ? 1 : float(2 * ratio_[c] / focus_[c]);
+    }
+    first_ = false;
+  }
+
+  std::array<float, 3> momentum{}, gain{};  // α, β
+
+ private:
+  std::array<double, 3> focus_{}, ratio_{};
+  bool first_ = true;
+};
+
+template <class Lanes>
+void take_step(const StepSizes& sizes, const Lanes& direct, const Lanes& kx, const Lanes& x, Lanes& d, Lanes& next) {
+  for (int c = 0; c < 3; ++c) {
+    const float momentum = sizes.momentum[c], gain = sizes.gain[c];
+    for (int l = 0; l < Lanes::kLanes; ++l) {
+      const float residual = direct.channel[c][l] + kx.channel[c][l] - x.channel[c][l];
+      const float step = momentum * d.channel[c][l] + gain * residual;
+      d.channel[c][l] = step;
+      next.channel[c][l] = x.channel[c][l] + step;
+    }
+  }
+}
+
+template <class Lanes>
+std::vector<Lanes> all_bounces(const Interreflection& k, const std::vector<Lanes>& direct) {
+  constexpr std::size_t kRows = 256;
+  std::vector<Lanes> x = direct, next(direct.size()), d(direct.size());
+  StepSizes sizes(k);
+  for (int step = steps_needed(k); step > 0; --step) {
+    sizes.advance();
+    renderer::parallel_for((x.size() + kRows - 1) / kRows, [&](std::size_t chunk) {
+      const std::size_t first = chunk * kRows, count = std::min(kRows, x.size() - first);
+      std::array<Lanes, kRows> kx;
+      multiply_rows(k.one_bounce, first, x, std::span<Lanes>(kx.data(), count));
+      for (std::size_t i = 0; i < count; ++i) {
+        take_step(sizes, direct[first + i], kx[i], x[first + i], d[first + i], next[first + i]);
+      }
+    });
+    std::swap(x, next);
+  }
+  return x;
+}
+
+std::array<double, 3> norms(const std::vector<LightQuad>& light) {
+  std::array<double, 3> squares{};
+  for (const LightQuad& at : light) {
+    for (int c = 0; c < 3; ++c) squares[c] += double(at.channel[c][0]) * double(at.channel[c][0]);
+  }
+  for (double& s : squares) s = std::sqrt(s);
+  return squares;
+}
+
+// By the power method, from light everywhere; how much some powers grow, as corners let single ones swing.
+std::array<double, 3> spectral_radius(const SparseTransport& k) {
+  std::vector<LightQuad> light(k.row_count()), next(k.row_count());
+  for (LightQuad& at : light) {
+    for (auto& channel : at.channel) channel[0] = 1;
+  }
+  std::array<double, 3> growth{};  // its logarithm
+  for (int power = 0; power < kWarmUp + kPowers; ++power) {
+    const auto before = norms(light);
+    multiply(k, light, next);
+    std::swap(light, next);
+    const auto after = norms(light);
+    for (int c = 0; c < 3; ++c) {
+      if (power >= kWarmUp) growth[c] += std::log(after[c] / before[c]) / kPowers;
+    }
+  }
+  std::array<double, 3> radius{};
+  for (int c = 0; c < 3; ++c) {
+    // Light that is gone altogether leaves NaN or minus infinity.
+    radius[c] = growth[c] > std::log(kLeastRadius) ? std::min(std::exp(growth[c]), kMostRadius) : kLeastRadius;
+  }
+  return radius;
+}
+
+// Of each channel: √(Σ K² / rows), which random entries' eigenvalues stay within (the circular law).
+std::array<double, 3> spread(const SparseTransport& k) {
+  std::array<double, 3> squares{};
+  for (std::size_t i = 0; i < k.row_count(); ++i) {
+    for (const SparseTransport::Entry& entry : k.row(i)) {
+      for (int c = 0; c < 3; ++c) squares[c] += double(entry.weight[c]) * double(entry.weight[c]);
+    }
+  }
+  for (double& s : squares) s = std::sqrt(s / double(k.row_count()));
+  return squares;
+}
+
+template <class Lanes>
+std::vector<Lanes> sum_of_any(const Interreflection& k, const std::vector<Lanes>& direct, int bounces) {
+  return bounces < 0 ? all_bounces(k, direct) : first_terms(k.one_bounce, direct, bounces);
+}
+
+}  // namespace
+
+Interreflection make_interreflection(SparseTransport one_bounce) {
+  Interreflection k{std::move(one_bounce)};
+  k.spectral_radius = spectral_radius(k.one_bounce);
+  k.imaginary = spread(k.one_bounce);
+  for (int c = 0; c < 3; ++c) k.imaginary[c] = std::min(k.imaginary[c], kMostImaginary * k.spectral_radius[c]);
+  return k;
+}
+
+Interreflection transposed(const Interreflection& k) {
+  return {k.one_bounce.transposed(k.one_bounce.row_count()), k.spectral_radius, k.imaginary};
+}
+
+std::vector<LightBlock> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightBlock>& direct,
+                                       int bounces) {
+  return sum_of_any(interreflection, direct, bounces);
+}
+
+std::vector<LightQuad> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightQuad>& direct,
+                                      int bounces) {
+  return sum_of_any(interreflection, direct, bounces);
+}
+
+}  // namespace chiaro::inverse
