@@ -1,12 +1,21 @@
 #include "cli/bake_summary.h"
 
+#include <fmt/format.h>
+
 namespace chiaro::cli {
 
 JsonObject grid_summary(const inverse::LightGrid& grid, std::size_t lights) {
   return {{"counts", JsonList{grid.counts[0], grid.counts[1], grid.counts[2]}},
           {"origin", grid.origin},
           {"spacing", grid.spacing},
+          {"finer_lights", grid.finer.size()},
           {"lights", lights}};
+}
+
+std::string text_of_lights(const inverse::LightGrid& grid) {
+  const std::string text = fmt::format("{} on a grid of {} x {} x {}", grid.positions.size(), grid.counts[0],
+                                       grid.counts[1], grid.counts[2]);
+  return grid.finer.empty() ? text : fmt::format("{}, {} of them in finer cells", text, grid.finer.size());
 }
 
 JsonObject bake_summary(const inverse::TransportCache& header, const inverse::BakeSummary& summary) {

@@ -54,8 +54,7 @@ void print_summary(Session& session, const BakeCommand& options, const inverse::
   session.finish(
       summary,
       aligned_rows({{"receivers", fmt::format("{}", cache.receiver_count)},
-                    {"lights", fmt::format("{} on a grid of {} x {} x {}", cache.grid.positions.size(),
-                                           cache.grid.counts[0], cache.grid.counts[1], cache.grid.counts[2])},
+                    {"lights", text_of_lights(cache.grid)},
                     {"spacing", text_of_vector(cache.grid.spacing) + " m"},
                     {"error of indirect light", text_of_percent(cache.indirect_relative_error)},
                     {"direct", text_of_seconds(baked.direct_seconds)},

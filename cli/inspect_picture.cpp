@@ -94,12 +94,10 @@ Inspection inspect_frame(const std::string& file) {
 
 void add_cache_header(Inspection& inspection, const TransportCache& cache) {
   const inverse::LightGrid& grid = cache.grid;
-  const auto& counts = grid.counts;
   inspection.add("receivers", cache.receiver_count, "receivers", fmt::format("{}", cache.receiver_count));
-  inspection.add("lights", grid.positions.size(), "lights", fmt::format("{}", grid.positions.size()));
+  inspection.add("lights", grid.positions.size(), "lights", text_of_lights(grid));
   inspection.add("grid", grid_summary(grid, grid.positions.size()), "grid",
-                 fmt::format("{} x {} x {} nodes from {} m, {} m apart", counts[0], counts[1], counts[2],
-                             text_of_vector(grid.origin), text_of_vector(grid.spacing)));
+                 fmt::format("from {} m, {} m apart", text_of_vector(grid.origin), text_of_vector(grid.spacing)));
   inspection.add("samples", cache.settings.samples, "samples",
                  fmt::format("{} gather rays per receiver", cache.settings.samples));
   inspection.add(

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,6 @@ namespace chiaro::inverse {
 namespace {
 
 using renderer::RayTracer;
-using renderer::Sampler;
 
 constexpr std::size_t kReceivers = 300, kPositions = 64;
 constexpr int kPointsPerSample = 8;
@@ -23,113 +24,132 @@ constexpr double kFirstLights = 64;
 // From one grid to the next: the spacing that would do if the error fell with this power of it, within bounds.
 constexpr double kPower = 1.3, kLeastStep = 0.5, kMostStep = 0.85;
 
+constexpr double kLocalError = 4;         // of a single position, over the median's
+constexpr int kTestsPerCell = 1;          // positions
+constexpr double kDarkest = 0.01;         // of the median light: what lights less is not worth finer cells
+constexpr double kMostFinerLights = 1;    // over those of the nodes
+constexpr float kTouching = 0.02F;        // of a finer cell
+constexpr std::uint32_t kMostTries = 8;   // for a test position in free space
+constexpr std::uint64_t kTestSeed = 101;  // apart from those of other positions
+
 // Holds grids against positions between their lights. The same operator gives both, so that its noise does not count.
 class InterpolationTest {
  public:
-  InterpolationTest(const RayTracer& tracer, const Receivers& receivers, const LightGrid& first,
-                    const BakeSettings& settings)
+  InterpolationTest(const RayTracer& tracer, const Receivers& receivers, const BakeSettings& settings)
       : tracer_(tracer),
         samples_(select_receivers(receivers, evenly_spread(receivers.size(), kReceivers)).samples),
         gather_(make_gather_operator(tracer, samples_,
                                      {.samples = settings.samples,
                                       .points_per_sample = kPointsPerSample,
                                       .bounces = settings.bounces,
-                                      .seed = settings.seed})),
-        positions_(random_light_positions(first, kPositions, settings.seed)) {
-    const std::vector<Vec3f> indirect = indirect_of(positions_);
-    TransportCache no_lights;
-    no_lights.receiver_count = samples_.size();
-    const LightResponse response(tracer_, samples_, no_lights);
-    for (std::size_t k = 0; k < positions_.size(); ++k) {
-      exact_.push_back(response.direct(to_eigen(positions_[k])));
-      for (std::size_t i = 0; i < samples_.size(); ++i) {
-        exact_[k].row(Eigen::Index(i)) += to_eigen(indirect[k * samples_.size() + i]).transpose();
-      }
-    }
+                                      .seed = settings.seed})) {
+    nothing_.receiver_count = samples_.size();
   }
 
-  double median_error(const LightGrid& grid) const {
-    TransportCache cache;
-    cache.grid = grid;
-    cache.receiver_count = samples_.size();
-    cache.indirect = indirect_of(grid.positions);
-    cache.visibility = visibility_of(grid.positions);
-    const LightResponse response(tracer_, samples_, cache);
-    std::vector<double> errors;
-    for (std::size_t k = 0; k < positions_.size(); ++k) {
-      const double norm = exact_[k].norm();
-      if (!(norm > 0)) continue;
-      const Column interpolated = response.evaluate(to_eigen(positions_[k]), Evaluation::kInterpolated);
-      errors.push_back((interpolated - exact_[k]).norm() / norm);
-    }
-    if (errors.empty()) return 0;
-    const auto middle = errors.begin() + std::ptrdiff_t(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
-    return *middle;
-  }
+  // What a cache has of one light.
+  struct Row {
+    std::vector<std::uint8_t> visibility;
+    std::vector<Vec3f> indirect;
+  };
 
- private:
-  // Row-major by light, as the next.
-  std::vector<Vec3f> indirect_of(std::span<const Vec3f> lights) const {
-    std::vector<Vec3f> all(lights.size() * samples_.size());
+  std::vector<Row> rows_of(std::span<const Vec3f> lights) const {
+    std::vector<Row> rows(lights.size(),
+                          {std::vector<std::uint8_t>(samples_.size()), std::vector<Vec3f>(samples_.size())});
     for (std::size_t first = 0; first < lights.size() && !gather_.points.empty(); first += kLightBlock) {
       const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
       const std::vector<LightBlock> blocks = indirect_illumination(tracer_, gather_, lights.subspan(first, count));
       for (std::size_t l = 0; l < count; ++l) {
         for (std::size_t i = 0; i < samples_.size(); ++i) {
           const auto& channel = blocks[i].channel;
-          all[(first + l) * samples_.size() + i] = {channel[0][l], channel[1][l], channel[2][l]};
+          rows[first + l].indirect[i] = {channel[0][l], channel[1][l], channel[2][l]};
         }
       }
     }
-    return all;
-  }
-
-  std::vector<std::uint8_t> visibility_of(const std::vector<Vec3f>& lights) const {
-    std::vector<std::uint8_t> all(lights.size() * samples_.size(), 0);
     renderer::parallel_for(lights.size(), [&](std::size_t l) {
       for (std::size_t i = 0; i < samples_.size(); ++i) {
-        all[l * samples_.size() + i] = sees(tracer_, samples_[i], lights[l], std::uint32_t(i)) ? 1 : 0;
+        rows[l].visibility[i] = sees(tracer_, samples_[i], lights[l], std::uint32_t(i)) ? 1 : 0;
       }
     });
-    return all;
+    return rows;
   }
 
+  // The light of positions, computed there.
+  struct Positions {
+    std::vector<Vec3f> at;
+    std::vector<Column> light;
+    std::vector<double> norm;
+  };
+
+  Positions exact(std::vector<Vec3f> at) const {
+    Positions positions{std::move(at), {}, {}};
+    const std::vector<Row> rows = rows_of(positions.at);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      Column light(Eigen::Index(samples_.size()), 3);
+      for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const float direct = rows[k].visibility[i] != 0 ? unoccluded_illumination(samples_[i], positions.at[k]) : 0;
+        light.row(Eigen::Index(i)) = to_eigen(rows[k].indirect[i] + Vec3f{direct, direct, direct}).transpose();
+      }
+      positions.norm.push_back(light.norm());
+      positions.light.push_back(std::move(light));
+    }
+    return positions;
+  }
+
+  // Relative, of each position; 0 where there is no light at all. rows: of the grid's lights.
+  std::vector<double> errors(const LightGrid& grid, const std::vector<const Row*>& rows,
+                             const Positions& positions) const {
+    TransportCache cache = nothing_;
+    cache.grid = grid;
+    for (const Row* row : rows) {
+      cache.visibility.insert(cache.visibility.end(), row->visibility.begin(), row->visibility.end());
+      cache.indirect.insert(cache.indirect.end(), row->indirect.begin(), row->indirect.end());
+    }
+    const LightResponse response(tracer_, samples_, cache);
+    std::vector<double> errors(positions.at.size());
+    renderer::parallel_for(errors.size(), [&](std::size_t k) {
+      if (!(positions.norm[k] > 0)) return;
+      const Column interpolated = response.evaluate(to_eigen(positions.at[k]), Evaluation::kInterpolated);
+      errors[k] = (interpolated - positions.light[k]).norm() / positions.norm[k];
+    });
+    return errors;
+  }
+
+ private:
   const RayTracer& tracer_;
   std::vector<renderer::SurfaceSample> samples_;
   GatherOperator gather_;
-  std::vector<Vec3f> positions_;
-  std::vector<Column> exact_;
+  TransportCache nothing_;
 };
 
-}  // namespace
+using Row = InterpolationTest::Row;
 
-std::vector<Vec3f> random_light_positions(const LightGrid& grid, std::size_t count, std::uint64_t seed) {
-  std::vector<Vec3f> positions;
-  for (std::uint32_t i = 0; positions.size() < count; ++i) {
-    Sampler sampler(seed, 0, i);
-    const renderer::Vec2f xy = sampler.next_2d();
-    const Vec3f position = grid.region.min + grid.region.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
-    std::size_t node = 0, stride = 1;
-    for (int a = 0; a < 3; ++a) {
-      const float at = grid.spacing[a] > 0 ? (position[a] - grid.origin[a]) / grid.spacing[a] : 0;
-      node += stride * std::size_t(std::clamp(int(std::lround(at)), 0, grid.counts[a] - 1));
-      stride *= std::size_t(grid.counts[a]);
-    }
-    if (grid.light_of_node[node] >= 0) positions.push_back(position);
-  }
-  return positions;
+std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
+  std::vector<const Row*> pointers;
+  for (const Row& row : rows) pointers.push_back(&row);
+  return pointers;
 }
 
-LightGrid choose_light_grid(const RayTracer& tracer, const Receivers& receivers, const LightGridOptions& options,
-                            const BakeSettings& settings, const renderer::Control& control) {
-  if (!(options.error > 0)) return make_light_grid(tracer, options);
-  const InterpolationTest test(tracer, receivers, make_light_grid(tracer, {.region = options.region}), settings);
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void check_interruption(const renderer::Control& control) {
+  if (control.stop_requested()) throw renderer::Interruption();
+}
+
+// The coarsest regular grid of this median error.
+LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, const LightGridOptions& options,
+                       const BakeSettings& settings, const renderer::Control& control) {
+  const Box3f region = make_light_grid(tracer, {.region = options.region}).region;
+  const auto positions = test.exact(random_light_positions(tracer, region, kPositions, settings.seed));
   double lights = kFirstLights, least = std::numeric_limits<double>::infinity();
   while (lights <= double(kMostGridLights)) {
-    if (control.stop_requested()) throw renderer::Interruption();
+    check_interruption(control);
     LightGrid grid = make_light_grid(tracer, {.region = options.region, .lights = lights});
-    const double error = test.median_error(grid);
+    const double error = median(test.errors(grid, pointers_to(test.rows_of(grid.positions)), positions));
     if (error <= options.error) return grid;
     least = std::min(least, error);
     const double step = std::clamp(std::pow(options.error / error, 1 / kPower), kLeastStep, kMostStep);
@@ -138,6 +158,149 @@ LightGrid choose_light_grid(const RayTracer& tracer, const Receivers& receivers,
   throw renderer::Error({tracer.scene().path, "option --grid",
                          fmt::format("{:.3g} % takes more than {} lights", 100 * options.error, kMostGridLights),
                          fmt::format("{:.1f} % or more, or a smaller --region", 100 * least)});
+}
+
+std::vector<GridCell> whole_cells(const LightGrid& grid) {
+  std::vector<GridCell> cells;
+  for (std::size_t node = 0; node < grid.light_of_node.size(); ++node) cells.push_back(cell_of(grid, {0, node}));
+  return cells;
+}
+
+// Along an axis on which the region is flat, one half is both.
+std::vector<GridCell> halves(const LightGrid& grid, const GridCell& cell) {
+  std::vector<GridCell> parts;
+  for (std::uint32_t z = 0; z < (grid.spacing.z > 0 ? 2 : 1); ++z) {
+    for (std::uint32_t y = 0; y < (grid.spacing.y > 0 ? 2 : 1); ++y) {
+      for (std::uint32_t x = 0; x < (grid.spacing.x > 0 ? 2 : 1); ++x) {
+        parts.push_back({cell.level + 1, {2 * cell.at[0] + x, 2 * cell.at[1] + y, 2 * cell.at[2] + z}});
+      }
+    }
+  }
+  return parts;
+}
+
+// Halves cells where interpolation between the lights that there are is wrong, again and again.
+class Refinement {
+ public:
+  Refinement(const RayTracer& tracer, const InterpolationTest& test, LightGrid grid, double most_error,
+             const BakeSettings& settings)
+      : tracer_(tracer),
+        free_space_(tracer),
+        test_(test),
+        grid_(std::move(grid)),
+        most_error_(most_error),
+        seed_(settings.seed + kTestSeed),
+        rows_of_nodes_(test.rows_of(grid_.positions)) {}
+
+  LightGrid run(const renderer::Control& control) {
+    std::vector<GridCell> cells = whole_cells(grid_);
+    for (int level = 1; level <= kMostLevels && !cells.empty(); ++level) {
+      check_interruption(control);
+      std::vector<GridCell> parts;
+      for (const GridCell& cell : wrong_ones(cells)) {
+        const std::vector<GridCell> these = halves(grid_, cell);
+        parts.insert(parts.end(), these.begin(), these.end());
+        rows_of_finer_.erase({cell.level, number_of(grid_, cell)});
+      }
+      add(parts);
+      cells = std::move(parts);
+    }
+    return grid_;
+  }
+
+ private:
+  struct Tests {
+    std::vector<std::size_t> cell;  // of each position
+    InterpolationTest::Positions positions;
+  };
+
+  Tests tests_of(const std::vector<GridCell>& cells) const {
+    std::vector<std::vector<Vec3f>> positions(cells.size());
+    renderer::parallel_for(cells.size(), [&](std::size_t c) {
+      const Box3f bounds = bounds_of(grid_, cells[c]);
+      const std::uint64_t seed = seed_ + std::uint64_t(cells[c].level);
+      for (std::uint32_t k = 0; k < kMostTries && positions[c].size() < kTestsPerCell; ++k) {
+        renderer::Sampler sampler(seed, std::uint32_t(number_of(grid_, cells[c])), k);
+        const renderer::Vec2f xy = sampler.next_2d();
+        const Vec3f at = bounds.min + bounds.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
+        if (free_space_.contains(at, kTouching * bounds.diagonal())) positions[c].push_back(at);
+      }
+    });
+    Tests tests;
+    std::vector<Vec3f> all;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      for (const Vec3f at : positions[c]) {
+        tests.cell.push_back(c);
+        all.push_back(at);
+      }
+    }
+    tests.positions = test_.exact(std::move(all));
+    return tests;
+  }
+
+  // The worst of them first, as many as there may be lights.
+  std::vector<GridCell> wrong_ones(const std::vector<GridCell>& cells) {
+    const Tests tests = tests_of(cells);
+    if (!bright_) bright_ = kDarkest * median(tests.positions.norm);
+    const std::vector<double> errors = test_.errors(grid_, rows(), tests.positions);
+    std::vector<double> worst(cells.size(), 0);
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      if (tests.positions.norm[k] > *bright_) worst[tests.cell[k]] = std::max(worst[tests.cell[k]], errors[k]);
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      if (worst[c] > most_error_) order.push_back(c);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return worst[a] > worst[b]; });
+    const double room = kMostFinerLights * double(grid_.node_light_count()) - double(rows_of_finer_.size());
+    order.resize(std::min(order.size(), std::size_t(std::max(0.0, room / 8))));
+    std::vector<GridCell> wrong;
+    for (const std::size_t c : order) wrong.push_back(cells[c]);
+    return wrong;
+  }
+
+  void add(const std::vector<GridCell>& parts) {
+    std::vector<LightGrid::FinerCell> cells;
+    std::vector<Vec3f> positions;
+    for (const GridCell& part : parts) {
+      const Box3f bounds = bounds_of(grid_, part);
+      const Vec3f middle = bounds.min + 0.5F * bounds.extent();
+      if (!free_space_.contains(middle, kTouching * bounds.diagonal())) continue;
+      cells.push_back({part.level, number_of(grid_, part)});
+      positions.push_back(middle);
+    }
+    std::vector<Row> rows = test_.rows_of(positions);
+    for (std::size_t k = 0; k < cells.size(); ++k) rows_of_finer_[cells[k]] = std::move(rows[k]);
+    std::vector<LightGrid::FinerCell> all;
+    for (const auto& [cell, row] : rows_of_finer_) all.push_back(cell);
+    set_finer_cells(grid_, std::move(all));
+  }
+
+  std::vector<const Row*> rows() const {
+    std::vector<const Row*> all = pointers_to(rows_of_nodes_);
+    for (const auto& [cell, row] : rows_of_finer_) all.push_back(&row);
+    return all;
+  }
+
+  const RayTracer& tracer_;
+  FreeSpace free_space_;
+  const InterpolationTest& test_;
+  LightGrid grid_;
+  double most_error_;
+  std::uint64_t seed_;
+  std::vector<Row> rows_of_nodes_;
+  std::map<LightGrid::FinerCell, Row> rows_of_finer_;
+  std::optional<double> bright_;  // norm of light that counts
+};
+
+}  // namespace
+
+LightGrid choose_light_grid(const RayTracer& tracer, const Receivers& receivers, const LightGridOptions& options,
+                            const BakeSettings& settings, const renderer::Control& control) {
+  if (!(options.error > 0)) return make_light_grid(tracer, options);
+  const InterpolationTest test(tracer, receivers, settings);
+  LightGrid grid = regular_grid(tracer, test, options, settings, control);
+  return Refinement(tracer, test, std::move(grid), kLocalError * options.error, settings).run(control);
 }
 
 }  // namespace chiaro::inverse

@@ -7,15 +7,18 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
+#include "renderer/core/sampler.h"
 
 namespace chiaro::inverse {
 namespace {
 
 using renderer::Error;
 
-constexpr float kDefaultInset = 0.02F;   // of the scene's extent, on every side
-constexpr float kInsideFraction = 0.6F;  // of probe rays that meet back faces, inside a solid
-constexpr float kTouching = 0.02F;       // of the spacing
+constexpr float kDefaultInset = 0.02F;      // of the scene's extent, on every side
+constexpr float kInsideFraction = 0.6F;     // of probe rays that meet back faces, inside a solid
+constexpr float kTouching = 0.02F;          // of the spacing
+constexpr float kRandomClearance = 1e-3F;   // of the region's diagonal
+constexpr std::uint32_t kMostTries = 1000;  // of random positions, for each
 
 // The 6 faces' and 8 corners' directions of a cube, turned a little so that they do not run along walls.
 std::vector<Vec3f> probe_directions() {
@@ -131,20 +134,61 @@ std::optional<Box3f> six_numbers(const std::string& text) {
 
 }  // namespace
 
+GridCell cell_of(const LightGrid& grid, const LightGrid::FinerCell& finer) {
+  const std::uint64_t nx = std::uint64_t(grid.counts[0]) << finer.level, ny = std::uint64_t(grid.counts[1])
+                                                                              << finer.level;
+  return {
+      finer.level,
+      {std::uint32_t(finer.number % nx), std::uint32_t(finer.number / nx % ny), std::uint32_t(finer.number / nx / ny)}};
+}
+
+std::uint64_t number_of(const LightGrid& grid, const GridCell& cell) {
+  const std::uint64_t nx = std::uint64_t(grid.counts[0]) << cell.level, ny = std::uint64_t(grid.counts[1])
+                                                                             << cell.level;
+  return cell.at[0] + nx * (cell.at[1] + ny * cell.at[2]);
+}
+
+Box3f bounds_of(const LightGrid& grid, const GridCell& cell) {
+  const Vec3f size = grid.spacing / float(1 << cell.level);
+  const Vec3f low = grid.region.min + size * Vec3f{float(cell.at[0]), float(cell.at[1]), float(cell.at[2])};
+  return {low, low + size};
+}
+
+std::size_t node_of(const LightGrid& grid, const GridCell& cell) {
+  const auto at = [&](int a) { return std::size_t(cell.at[std::size_t(a)] >> cell.level); };
+  return at(0) + std::size_t(grid.counts[0]) * (at(1) + std::size_t(grid.counts[1]) * at(2));
+}
+
+void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells) {
+  grid.positions.resize(grid.node_light_count());
+  grid.finer = std::move(cells);
+  for (const LightGrid::FinerCell& finer : grid.finer) {
+    const Box3f bounds = bounds_of(grid, cell_of(grid, finer));
+    grid.positions.push_back(bounds.min + 0.5F * bounds.extent());
+  }
+}
+
+FreeSpace::FreeSpace(const renderer::RayTracer& tracer)
+    : tracer_(tracer), directions_(probe_directions()), sides_tell_(sides_tell(tracer, directions_)) {}
+
+bool FreeSpace::contains(Vec3f position, float clearance) const {
+  const Probe at = probe(tracer_, position, directions_);
+  return !(sides_tell_ && looks_inside(at)) && at.nearest >= clearance;
+}
+
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer.bounds()));
   LightGrid grid =
       empty_grid(region, options.counts[0] > 0 ? options.counts : counts_for(region.extent(), options.lights));
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
-  const std::vector<Vec3f> directions = probe_directions();
-  std::vector<Probe> probes(nodes);
-  renderer::parallel_for(nodes, [&](std::size_t i) { probes[i] = probe(tracer, node_position(grid, i), directions); });
-
-  const bool solids = sides_tell(tracer, directions);
+  const FreeSpace free_space(tracer);
   const float touching = kTouching * least_positive(grid.spacing);
+  std::vector<char> free(nodes);
+  renderer::parallel_for(
+      nodes, [&](std::size_t i) { free[i] = free_space.contains(node_position(grid, i), touching) ? 1 : 0; });
   grid.light_of_node.assign(nodes, -1);
   for (std::size_t i = 0; i < nodes; ++i) {
-    if ((solids && looks_inside(probes[i])) || probes[i].nearest < touching) continue;
+    if (free[i] == 0) continue;
     grid.light_of_node[i] = int(grid.positions.size());
     grid.positions.push_back(node_position(grid, i));
   }
@@ -153,6 +197,20 @@ LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOpti
                  "a region with free space, by --region"});
   }
   return grid;
+}
+
+std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, const Box3f& region, std::size_t count,
+                                          std::uint64_t seed) {
+  const FreeSpace free_space(tracer);
+  const float clearance = kRandomClearance * region.diagonal();
+  std::vector<Vec3f> positions;
+  for (std::uint32_t i = 0; positions.size() < count && i < kMostTries * count; ++i) {
+    renderer::Sampler sampler(seed, 0, i);
+    const renderer::Vec2f xy = sampler.next_2d();
+    const Vec3f position = region.min + region.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
+    if (free_space.contains(position, clearance)) positions.push_back(position);
+  }
+  return positions;
 }
 
 Box3f parse_region(const renderer::Scene& scene, const std::string& text) {

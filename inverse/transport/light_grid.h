@@ -12,15 +12,41 @@ namespace chiaro::inverse {
 using renderer::Box3f;
 using renderer::Vec3f;
 
-// Candidate light positions in the middle of the cells of a regular grid over a region, x fastest.
+// Candidate light positions in the middle of the cells of a regular grid over a region, x fastest, and of parts of
+// cells where transport changes fast.
 struct LightGrid {
   Box3f region;                    // where lights may stand
   Vec3f origin;                    // of node (0, 0, 0), metres
   Vec3f spacing;                   // metres
   std::array<int, 3> counts{};     // nodes along x, y, z
   std::vector<int> light_of_node;  // index into positions, -1: left out (inside a solid)
-  std::vector<Vec3f> positions;    // of the lights kept, in the order of their nodes
+  // A cell of the grid with all cells halved `level` times, x fastest.
+  struct FinerCell {
+    int level = 1;
+    std::uint64_t number = 0;
+    auto operator<=>(const FinerCell&) const = default;
+  };
+  std::vector<FinerCell> finer;  // that have a light of their own; ascending
+  std::vector<Vec3f> positions;  // of the lights kept, in the order of their nodes, then of `finer`
+
+  std::size_t node_light_count() const { return positions.size() - finer.size(); }
 };
+
+inline constexpr int kMostLevels = 3;  // of finer cells
+
+// Whole cells are those of level 0.
+struct GridCell {
+  int level = 0;
+  std::array<std::uint32_t, 3> at{};  // along x, y and z
+};
+GridCell cell_of(const LightGrid& grid, const LightGrid::FinerCell& finer);
+std::uint64_t number_of(const LightGrid& grid, const GridCell& cell);
+Box3f bounds_of(const LightGrid& grid, const GridCell& cell);
+// The whole cell that it is part of.
+std::size_t node_of(const LightGrid& grid, const GridCell& cell);
+
+// Gives these cells, ascending, lights of their own in place of all finer cells that the grid had.
+void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells);
 
 struct LightGridOptions {
   std::array<int, 3> counts{};       // 0, 0, 0: from the region's shape, for about so many nodes:
@@ -29,8 +55,26 @@ struct LightGridOptions {
   double error = 0;  // of interpolation, for choose_light_grid(); 0: whatever comes of the above
 };
 
+// Where a light may stand: not inside a solid.
+class FreeSpace {
+ public:
+  // Keeps a reference to the tracer.
+  explicit FreeSpace(const renderer::RayTracer& tracer);
+  // No surface nearer than `clearance` (metres), as far as a few rays tell.
+  bool contains(Vec3f position, float clearance) const;
+
+ private:
+  const renderer::RayTracer& tracer_;
+  std::vector<Vec3f> directions_;
+  bool sides_tell_;  // of the scene's surfaces, inside from outside
+};
+
 // Nodes inside solids, and those that touch a surface, are left out. Error where none is left ("no light possible").
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options);
+
+// Evenly distributed over the free space of the region. Fewer where there is hardly any.
+std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, const Box3f& region, std::size_t count,
+                                          std::uint64_t seed);
 
 // `--region`: the world bounds of a node's instances by name, or "x0,y0,z0,x1,y1,z1". Error naming what is wrong.
 Box3f parse_region(const renderer::Scene& scene, const std::string& text);

@@ -20,62 +20,16 @@ void check_kind(const UnityLight& light, Evaluation evaluation, const GatherOper
 
 LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<SurfaceSample> receivers,
                              const TransportCache& cache, const GatherOperator* gather)
-    : tracer_(tracer), receivers_(std::move(receivers)), cache_(cache), gather_(gather) {
+    : tracer_(tracer),
+      receivers_(std::move(receivers)),
+      cache_(cache),
+      interpolation_(tracer, cache.grid),
+      gather_(gather) {
   CHIARO_CHECK(cache.receiver_count == receivers_.size());
 }
 
-// Trilinear; nodes left out of the grid lose their share to the others.
-std::vector<LightResponse::Weight> LightResponse::interpolation_weights(const Vector3d& position) const {
-  const LightGrid& grid = cache_.grid;
-  int low[3];
-  double t[3], slope[3];
-  for (int a = 0; a < 3; ++a) {
-    const int last = grid.counts[a] - 1;
-    const double at = last > 0 ? (position[a] - double(grid.origin[a])) / double(grid.spacing[a]) : 0;
-    const double inside = std::clamp(at, 0.0, double(last));
-    low[a] = std::min(int(inside), std::max(0, last - 1));
-    t[a] = last > 0 ? inside - low[a] : 0;
-    slope[a] = last > 0 && at == inside ? 1 / double(grid.spacing[a]) : 0;
-  }
-  std::vector<Weight> weights;
-  double total = 0;
-  Vector3d total_gradient = Vector3d::Zero();
-  for (int corner = 0; corner < 8; ++corner) {
-    double w[3], dw[3];
-    std::size_t node = 0, stride = 1;
-    bool exists = true;
-    for (int a = 0; a < 3; ++a) {
-      const bool high = (corner >> a & 1) != 0;
-      exists = exists && (!high || grid.counts[a] > 1);
-      w[a] = high ? t[a] : 1 - t[a];
-      dw[a] = high ? slope[a] : -slope[a];
-      node += stride * std::size_t(low[a] + (high ? 1 : 0));
-      stride *= std::size_t(grid.counts[a]);
-    }
-    if (!exists || grid.light_of_node[node] < 0) continue;
-    const Vector3d gradient{dw[0] * w[1] * w[2], w[0] * dw[1] * w[2], w[0] * w[1] * dw[2]};
-    weights.push_back({std::size_t(grid.light_of_node[node]), w[0] * w[1] * w[2], gradient});
-    total += weights.back().value;
-    total_gradient += gradient;
-  }
-  if (total < 1e-6) {  // amid nodes that were all left out: the nearest light stands for them
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < grid.positions.size(); ++j) {
-      const double d = (to_eigen(grid.positions[j]) - position).squaredNorm();
-      if (d < least) least = d, nearest = j;
-    }
-    return {{nearest, 1, Vector3d::Zero()}};
-  }
-  for (Weight& w : weights) {
-    w.gradient = (w.gradient - (w.value / total) * total_gradient) / total;
-    w.value /= total;
-  }
-  return weights;
-}
-
 std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluation evaluation,
-                                              const std::vector<Weight>& weights) const {
+                                              const std::vector<GridWeight>& weights) const {
   std::vector<double> visible(receivers_.size(), 0);
   const Vec3f light = to_vec3f(position);
   if (evaluation != Evaluation::kInterpolated) {
@@ -92,7 +46,7 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluati
     if (dot(light - at.position, at.normal) <= 0) continue;
     // Nodes behind the receiver know nothing of what stands in front of it.
     double total = 0;
-    for (const Weight& w : weights) {
+    for (const GridWeight& w : weights) {
       if (dot(cache_.grid.positions[w.light] - at.position, at.normal) <= 0) continue;
       total += w.value;
       visible[i] += w.value * cache_.visibility[w.light * cache_.receiver_count + i];
@@ -115,12 +69,12 @@ ColumnWithGradient LightResponse::gathered(const UnityLight& light) const {
   return {column_of(0), {column_of(1), column_of(2), column_of(3)}};
 }
 
-ColumnWithGradient LightResponse::indirect_with_gradient(const std::vector<Weight>& weights) const {
+ColumnWithGradient LightResponse::indirect_with_gradient(const std::vector<GridWeight>& weights) const {
   ColumnWithGradient column{indirect(weights), {}};
   const auto rows = Eigen::Index(receivers_.size());
   for (int a = 0; a < 3; ++a) {
     column.gradient[a] = Column::Zero(rows, 3);
-    for (const Weight& w : weights) {
+    for (const GridWeight& w : weights) {
       const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
       for (Eigen::Index i = 0; i < rows; ++i)
         column.gradient[a].row(i) += w.gradient[a] * to_eigen(indirect[i]).transpose();
@@ -132,7 +86,7 @@ ColumnWithGradient LightResponse::indirect_with_gradient(const std::vector<Weigh
 ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light, Evaluation evaluation) const {
   check_kind(light, evaluation, gather_);
   const bool exact = evaluation == Evaluation::kExact;
-  const std::vector<Weight> weights = exact ? std::vector<Weight>() : interpolation_weights(light.position);
+  const std::vector<GridWeight> weights = exact ? std::vector<GridWeight>() : interpolation_.weights(light.position);
   const std::vector<double> visible = visibility(light.position, evaluation, weights);
   ColumnWithGradient column = exact ? gathered(light) : indirect_with_gradient(weights);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
@@ -144,9 +98,9 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light
   return column;
 }
 
-Column LightResponse::indirect(const std::vector<Weight>& weights) const {
+Column LightResponse::indirect(const std::vector<GridWeight>& weights) const {
   Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
-  for (const Weight& w : weights) {
+  for (const GridWeight& w : weights) {
     const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
       column.row(Eigen::Index(i)) += w.value * to_eigen(indirect[i]).transpose();
@@ -156,7 +110,7 @@ Column LightResponse::indirect(const std::vector<Weight>& weights) const {
 }
 
 Column LightResponse::interpolated_indirect(const Vector3d& position) const {
-  return indirect(interpolation_weights(position));
+  return indirect(interpolation_.weights(position));
 }
 
 void LightResponse::add_direct(const Vector3d& position, const std::vector<double>& visible, Column& column) const {
@@ -176,7 +130,7 @@ Column LightResponse::direct(const Vector3d& position) const {
 Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) const {
   if (evaluation == Evaluation::kExact) return evaluate_with_gradient(light, evaluation).value;
   check_kind(light, evaluation, gather_);
-  const std::vector<Weight> weights = interpolation_weights(light.position);
+  const std::vector<GridWeight> weights = interpolation_.weights(light.position);
   Column column = indirect(weights);
   add_direct(light.position, visibility(light.position, evaluation, weights), column);
   return column;
@@ -184,7 +138,7 @@ Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) c
 
 Column LightResponse::interpolated_columns(const Vector3d& position) const {
   Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
-  for (const Weight& w : interpolation_weights(position)) column += w.value * grid_column(w.light);
+  for (const GridWeight& w : interpolation_.weights(position)) column += w.value * grid_column(w.light);
   return column;
 }
 

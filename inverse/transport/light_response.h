@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "inverse/transport/gather_operator.h"
+#include "inverse/transport/grid_interpolation.h"
 #include "inverse/transport/transport_cache.h"
 
 namespace chiaro::inverse {
@@ -49,22 +50,17 @@ class LightResponse {
   Column grid_column(std::size_t light) const;
 
  private:
-  struct Weight {
-    std::size_t light;
-    double value;
-    Eigen::Vector3d gradient;
-  };
-  std::vector<Weight> interpolation_weights(const Eigen::Vector3d& position) const;
-  Column indirect(const std::vector<Weight>& weights) const;
-  ColumnWithGradient indirect_with_gradient(const std::vector<Weight>& weights) const;
+  Column indirect(const std::vector<GridWeight>& weights) const;
+  ColumnWithGradient indirect_with_gradient(const std::vector<GridWeight>& weights) const;
   ColumnWithGradient gathered(const UnityLight& light) const;
   void add_direct(const Eigen::Vector3d& position, const std::vector<double>& visible, Column& column) const;
   std::vector<double> visibility(const Eigen::Vector3d& position, Evaluation evaluation,
-                                 const std::vector<Weight>& weights) const;
+                                 const std::vector<GridWeight>& weights) const;
 
   const renderer::RayTracer& tracer_;
   std::vector<renderer::SurfaceSample> receivers_;
   const TransportCache& cache_;
+  GridInterpolation interpolation_;
   const GatherOperator* gather_;
 };
 

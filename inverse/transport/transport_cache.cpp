@@ -33,26 +33,41 @@ std::vector<int> nodes_of_lights(const LightGrid& grid) {
   return nodes;
 }
 
+std::string name_of_level(int level) { return fmt::format("grid_finer_{}", level); }
+
+void append_finer_cells(const LightGrid& grid, Attributes& attributes) {
+  for (int level = 1; level <= kMostLevels; ++level) {
+    std::vector<int> numbers;
+    for (const LightGrid::FinerCell& cell : grid.finer) {
+      if (cell.level == level) numbers.push_back(int(cell.number));
+    }
+    if (!numbers.empty()) attributes.emplace_back("chiaro:" + name_of_level(level), format_number_ranges(numbers));
+  }
+}
+
 Attributes header_of(const TransportCache& cache) {
   const LightGrid& grid = cache.grid;
-  return {{"chiaro:kind", std::string("transport cache")},
-          {"chiaro:format_version", kFormatVersion},
-          {"chiaro:units",
-           std::string("indirect / indirect_scale: illumination in cd/m^2 per candela; visibility: 0 or 1")},
-          {"chiaro:indirect_scale", cache.indirect_scale},
-          {"chiaro:region_min", array_of(grid.region.min)},
-          {"chiaro:region_max", array_of(grid.region.max)},
-          {"chiaro:grid_origin", array_of(grid.origin)},
-          {"chiaro:grid_spacing", array_of(grid.spacing)},
-          {"chiaro:grid_counts", fmt::format("{},{},{}", grid.counts[0], grid.counts[1], grid.counts[2])},
-          {"chiaro:grid_nodes", format_number_ranges(nodes_of_lights(grid))},
-          {"chiaro:scene_fingerprint", cache.scene_fingerprint},
-          {"chiaro:receiver_fingerprint", cache.receiver_fingerprint},
-          {"chiaro:samples", cache.settings.samples},
-          {"chiaro:bounces", cache.settings.bounces},
-          {"chiaro:seed", fmt::format("{}", cache.settings.seed)},
-          {"chiaro:materials", cache.settings.materials},
-          {"chiaro:indirect_relative_error", float(cache.indirect_relative_error)}};
+  Attributes attributes{
+      {"chiaro:kind", std::string("transport cache")},
+      {"chiaro:format_version", kFormatVersion},
+      {"chiaro:units",
+       std::string("indirect / indirect_scale: illumination in cd/m^2 per candela; visibility: 0 or 1")},
+      {"chiaro:indirect_scale", cache.indirect_scale},
+      {"chiaro:region_min", array_of(grid.region.min)},
+      {"chiaro:region_max", array_of(grid.region.max)},
+      {"chiaro:grid_origin", array_of(grid.origin)},
+      {"chiaro:grid_spacing", array_of(grid.spacing)},
+      {"chiaro:grid_counts", fmt::format("{},{},{}", grid.counts[0], grid.counts[1], grid.counts[2])},
+      {"chiaro:grid_nodes", format_number_ranges(nodes_of_lights(grid))},
+      {"chiaro:scene_fingerprint", cache.scene_fingerprint},
+      {"chiaro:receiver_fingerprint", cache.receiver_fingerprint},
+      {"chiaro:samples", cache.settings.samples},
+      {"chiaro:bounces", cache.settings.bounces},
+      {"chiaro:seed", fmt::format("{}", cache.settings.seed)},
+      {"chiaro:materials", cache.settings.materials},
+      {"chiaro:indirect_relative_error", float(cache.indirect_relative_error)}};
+  append_finer_cells(grid, attributes);
+  return attributes;
 }
 
 // Header values by name, each an Error where it is missing or of another kind.
@@ -61,11 +76,17 @@ class Header {
   Header(const Attributes& attributes, std::string file) : attributes_(attributes), file_(std::move(file)) {}
 
   template <class T>
-  const T& get(const std::string& name) const {
+  const T* find(const std::string& name) const {
     for (const auto& [key, value] : attributes_) {
       if (key != "chiaro:" + name) continue;
-      if (const T* typed = std::get_if<T>(&value)) return *typed;
+      if (const T* typed = std::get_if<T>(&value)) return typed;
     }
+    return nullptr;
+  }
+
+  template <class T>
+  const T& get(const std::string& name) const {
+    if (const T* value = find<T>(name)) return *value;
     throw Error({file_, "header", "no attribute chiaro:" + name, kNotACache});
   }
 
@@ -116,6 +137,21 @@ bool fills_region(const LightGrid& grid) {
   return true;
 }
 
+void read_finer_cells(const Header& header, const std::string& file, LightGrid& grid) {
+  std::vector<LightGrid::FinerCell> cells;
+  for (int level = 1; level <= kMostLevels; ++level) {
+    const auto* text = header.find<std::string>(name_of_level(level));
+    if (text == nullptr) continue;
+    const auto numbers = parse_number_ranges(*text);
+    const double count = double(grid.light_of_node.size()) * double(1 << (3 * level));
+    if (!numbers || numbers->empty() || double(numbers->back()) >= count) {
+      throw Error({file, "header", fmt::format("chiaro:{} does not fit the grid", name_of_level(level)), kNotACache});
+    }
+    for (const int number : *numbers) cells.push_back({level, std::uint64_t(number)});
+  }
+  set_finer_cells(grid, std::move(cells));
+}
+
 LightGrid read_grid(const Header& header, const std::string& file) {
   LightGrid grid;
   grid.region = {header.vector("region_min"), header.vector("region_max")};
@@ -135,6 +171,7 @@ LightGrid read_grid(const Header& header, const std::string& file) {
     const int z = node / grid.counts[0] / grid.counts[1];
     grid.positions.push_back(grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)});
   }
+  read_finer_cells(header, file, grid);
   return grid;
 }
 

@@ -54,18 +54,5 @@ TEST_F(GridByError, SaysWhenNoGridIsFineEnough) {
   EXPECT_THROW(lights_for(1e-5, {.samples = 4, .bounces = 0, .seed = 3, .materials = "gltf"}), renderer::Error);
 }
 
-TEST_F(GridByError, RandomPositionsAreInTheRegionAndNotInSolids) {
-  const LightGrid grid = make_light_grid(tracer, {.counts = {8, 8, 8}, .region = kRegion});
-  ASSERT_LT(grid.positions.size(), 512U);  // some are in the ball
-  const std::vector<Vec3f> positions = random_light_positions(grid, 300, 1);
-  ASSERT_EQ(positions.size(), 300U);
-  for (const Vec3f p : positions) {
-    float nearest = renderer::kInfinity;
-    for (const Vec3f light : grid.positions) nearest = std::min(nearest, length(light - p));
-    EXPECT_LT(nearest, 0.51F * length(grid.spacing));
-    for (int a = 0; a < 3; ++a) EXPECT_TRUE(p[a] >= kRegion.min[a] && p[a] <= kRegion.max[a]);
-  }
-}
-
 }  // namespace
 }  // namespace chiaro::inverse

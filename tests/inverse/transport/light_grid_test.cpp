@@ -58,6 +58,22 @@ TEST(LightGrid, LeavesOutTheInsideOfSolidsAndNothingElse) {
   EXPECT_GT(inside, 30U);
 }
 
+TEST(LightGrid, RandomPositionsAreInTheRegionAndNotInSolids) {
+  const Scene scene = room_with_ball();
+  const RayTracer tracer(scene);
+  const Box3f region{{1, 0.5F, 1}, {3, 2.5F, 3}};
+  const std::vector<Vec3f> positions = random_light_positions(tracer, region, 400, 1);
+  ASSERT_EQ(positions.size(), 400U);
+  int lower = 0;
+  for (const Vec3f p : positions) {
+    EXPECT_TRUE(region.contains(p));
+    EXPECT_GT(length(p - kBall), 0.99F * kBallRadius);
+    lower += p.y < 1.5F ? 1 : 0;
+  }
+  // The ball leaves 2.73 of the lower half's 4 m³, 3.13 of the upper's; five standard deviations.
+  EXPECT_NEAR(lower, 400 * 2.73 / 5.86, 50);
+}
+
 TEST(LightGrid, StandsInTheMiddleOfTheRegionsCells) {
   const Scene scene = room_with_ball();
   const RayTracer tracer(scene);

@@ -163,8 +163,14 @@ LightGrid regular_grid(const std::vector<int>& left_out) {
   return grid;
 }
 
+Scene room_of_the_grid() {
+  Scene scene;
+  test::add_mesh(scene, test::room({4, 3, 5}, 2), test::lambert({0.6F, 0.5F, 0.4F}), "room");
+  return scene;
+}
+
 TEST(LightResponse, WeightsSumToOneEverywhereAlsoNearLeftOutNodes) {
-  const Scene scene = empty_room();
+  const Scene scene = room_of_the_grid();
   const RayTracer tracer(scene);
   // A block of 2 × 2 × 2 nodes, so that some cells have lost all corners; and some single ones.
   for (const std::vector<int>& left_out : {std::vector<int>{}, {17, 18, 21, 22, 29, 30, 33, 34}, {0, 5, 26, 59}}) {
@@ -184,7 +190,7 @@ TEST(LightResponse, WeightsSumToOneEverywhereAlsoNearLeftOutNodes) {
 }
 
 TEST(LightResponse, ReproducesLinearFieldsAndTheirSlopes) {
-  const Scene scene = empty_room();
+  const Scene scene = room_of_the_grid();
   const RayTracer tracer(scene);
   const LightGrid grid = regular_grid({});
   const TransportCache cache = cache_of(grid, [](Vec3f p) { return Vec3f{p.x, 1 + 2 * p.y, p.x + p.y + p.z}; });
@@ -204,7 +210,7 @@ TEST(LightResponse, ReproducesLinearFieldsAndTheirSlopes) {
 }
 
 TEST(LightResponse, BeyondTheGridTakesItsBorder) {
-  const Scene scene = empty_room();
+  const Scene scene = room_of_the_grid();
   const RayTracer tracer(scene);
   const TransportCache cache = cache_of(regular_grid({}), [](Vec3f p) { return p; });
   const LightResponse response(tracer, receiver_below(), cache);

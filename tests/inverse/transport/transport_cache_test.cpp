@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using renderer::Error;
 using renderer::Sampler;
 
-// 3 × 2 × 2 nodes, two of them left out; entries of many magnitudes up to `largest`.
+// 3 × 2 × 2 nodes, two of them left out, and three lights in finer cells; entries of many magnitudes up to `largest`.
 TransportCache make_cache(float largest) {
   TransportCache cache;
   LightGrid& grid = cache.grid;
@@ -34,8 +34,9 @@ TransportCache make_cache(float largest) {
                                grid.spacing * Vec3f{float(node % 3), float(node / 3 % 2), float(node / 6)});
     }
   }
+  set_finer_cells(grid, {{1, 7}, {1, 95}, {3, 6000}});
   cache.receiver_count = 37;
-  for (std::uint32_t i = 0; i < 10 * 37; ++i) {
+  for (std::uint32_t i = 0; i < 13 * 37; ++i) {
     Sampler sampler(1, i, 0);
     const float magnitude = largest * std::exp2(-20 * sampler.next_1d());
     const renderer::Vec2f xy = sampler.next_2d();
@@ -97,6 +98,7 @@ TEST_F(TransportCacheFile, KeepsEverythingInItsHeader) {
     EXPECT_EQ(read.grid.spacing, cache.grid.spacing);
     EXPECT_EQ(read.grid.counts, cache.grid.counts);
     EXPECT_EQ(read.grid.light_of_node, cache.grid.light_of_node);
+    EXPECT_EQ(read.grid.finer, cache.grid.finer);
     EXPECT_EQ(read.grid.positions, cache.grid.positions);
     EXPECT_EQ(read.scene_fingerprint, cache.scene_fingerprint);
     EXPECT_EQ(read.receiver_fingerprint, cache.receiver_fingerprint);
@@ -187,6 +189,10 @@ TEST_F(TransportCacheFile, HeadersThatDoNotFitAreRefused) {
   for (const char* nodes : {"0-11", "0-3", "0-3,6-12", "", "x", "0-3,6-10,99999"}) {
     save_with("grid_nodes", std::string(nodes));
     expect_refused(std::string("grid_nodes ") + nodes);
+  }
+  for (const char* cells : {"7", "7,96", "", "x"}) {
+    save_with("grid_finer_1", std::string(cells));
+    expect_refused(std::string("grid_finer_1 ") + cells);
   }
   for (const float scale : {0.0F, -1.0F, renderer::kInfinity, std::nanf("")}) {
     save_with("indirect_scale", scale);
