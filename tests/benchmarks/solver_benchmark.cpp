@@ -1,0 +1,233 @@
+// How well solve finds random light sets again: count, error, positions, intensities and time, by count of lights.
+//   solver_benchmark SCENE.glb --seed 1 --sets 20 --lights 1,3,5,6,7,9,11,16 --noise 0.01 --method joint
+// Lights stand in free space, at least 5 % of the scene's diagonal from each other and 3 % from surfaces; each gives at
+// least 2 % of all illumination, their intensities are within a factor of 8, their colours random. Targets are traced
+// to the noise asked for, with seeds that the solver does not use.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "inverse/solve/solve.h"
+#include "inverse/transport/bake_file.h"
+#include "renderer/core/sampler.h"
+#include "renderer/io/load_gltf.h"
+#include "renderer/trace/trace_illumination.h"
+
+namespace {
+
+using namespace chiaro;
+using namespace chiaro::inverse;
+using renderer::PointLight;
+using renderer::RayTracer;
+
+constexpr float kApart = 0.05F, kFromSurfaces = 0.03F;  // of the diagonal
+constexpr double kLeastShare = 0.02;                    // of all illumination
+constexpr float kIntensityRatio = 8;
+constexpr int kPilotSamples = 16;
+
+struct Options {
+  std::string scene, method = "joint";
+  std::uint64_t seed = 1;
+  std::size_t sets = 20;
+  std::vector<std::size_t> lights{1, 3, 5, 6, 7, 9, 11, 16};
+  double noise = 0.01;
+  int important_vertices = 1000;
+  float max_edge = 0;
+  bool verbose = false;
+};
+
+Options parse(int argc, char** argv) {
+  Options options;
+  CLI::App app("How well solve finds random light sets again");
+  app.add_option("scene", options.scene)->required();
+  app.add_option("--seed", options.seed);
+  app.add_option("--sets", options.sets, "Of each count of lights");
+  app.add_option("--lights", options.lights)->delimiter(',');
+  app.add_option("--noise", options.noise, "Of the targets, relative L2");
+  app.add_option("--method", options.method)->check(CLI::IsMember({"joint", "thesis"}));
+  app.add_option("--important-vertices", options.important_vertices);
+  app.add_option("--max-edge", options.max_edge, "Of the receivers, metres");
+  app.add_flag("--verbose", options.verbose, "A line for each set");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Error& error) {
+    std::exit(app.exit(error));
+  }
+  return options;
+}
+
+struct Stage {
+  const RayTracer& tracer;
+  const Receivers& receivers;
+  Receivers some;  // of them
+  float diagonal;
+};
+
+bool apart(const Stage& stage, const std::vector<PointLight>& lights, Vec3f position) {
+  for (const PointLight& light : lights) {
+    if (length(light.position - position) < kApart * stage.diagonal) return false;
+  }
+  for (const Vec3f p : stage.receivers.positions) {
+    if (length(p - position) < kFromSurfaces * stage.diagonal) return false;
+  }
+  return true;
+}
+
+double sum_of(const std::vector<Vec3f>& values) {
+  double sum = 0;
+  for (const Vec3f v : values) sum += double(v.x + v.y + v.z);
+  return sum;
+}
+
+bool each_matters(const Stage& stage, const std::vector<PointLight>& lights) {
+  std::vector<double> given;
+  for (const PointLight& light : lights) {
+    given.push_back(sum_of(trace_illumination(stage.tracer, stage.some.samples, {light}, {8, -1, 77, false}).value));
+  }
+  double all = 0;
+  for (const double g : given) all += g;
+  return *std::min_element(given.begin(), given.end()) >= kLeastShare * all;
+}
+
+std::vector<PointLight> random_lights(const Stage& stage, const Box3f& region, std::size_t count, std::uint64_t seed) {
+  for (std::uint64_t attempt = 0;; ++attempt) {
+    std::vector<PointLight> lights;
+    const auto places = random_light_positions(stage.tracer, region, 200, seed * 1000 + attempt);
+    for (std::uint32_t i = 0; i < places.size() && lights.size() < count; ++i) {
+      if (!apart(stage, lights, places[i])) continue;
+      renderer::Sampler sampler(seed + 17, std::uint32_t(attempt), i);
+      const renderer::Vec2f u = sampler.next_2d();
+      const float intensity = 5 * std::pow(kIntensityRatio, u.x);
+      Vec3f color{0.15F + 0.85F * u.y, 0.15F + 0.85F * sampler.next_1d(), 0.15F + 0.85F * sampler.next_1d()};
+      color = color / max_component(color);
+      lights.push_back({"", places[i], intensity * color});
+    }
+    if (lights.size() == count && each_matters(stage, lights)) return lights;
+  }
+}
+
+Target traced_target(const Stage& stage, const std::vector<PointLight>& lights, double noise, std::uint64_t seed) {
+  renderer::Lights all(lights.begin(), lights.end());
+  const auto pilot =
+      trace_illumination(stage.tracer, stage.some.samples, all, {kPilotSamples, -1, seed * 7919 + 5, true});
+  const double ratio = relative_standard_error(pilot) / noise;
+  const int samples = std::max(4, int(std::ceil(kPilotSamples * ratio * ratio)));
+  const auto traced =
+      trace_illumination(stage.tracer, stage.receivers.samples, all, {samples, -1, seed * 7919 + 6, true});
+  return {stage.receivers, traced.value, std::vector<float>(stage.receivers.size(), 1),
+          standard_error_per_receiver(traced)};
+}
+
+// Of lights found, nearest pairs first; relative to the diagonal and to the true intensity.
+struct Distances {
+  std::vector<double> position, intensity;
+};
+
+Distances match(const std::vector<PointLight>& truth, const std::vector<FoundLight>& found, float diagonal) {
+  struct Pair {
+    float distance;
+    std::size_t truth, found;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    for (std::size_t j = 0; j < found.size(); ++j) {
+      pairs.push_back({length(truth[i].position - found[j].light.position), i, j});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  std::vector<bool> truth_taken(truth.size()), found_taken(found.size());
+  Distances distances;
+  for (const Pair& pair : pairs) {
+    if (truth_taken[pair.truth] || found_taken[pair.found]) continue;
+    truth_taken[pair.truth] = found_taken[pair.found] = true;
+    distances.position.push_back(double(pair.distance / diagonal));
+    const Vec3f wanted = truth[pair.truth].intensity;
+    distances.intensity.push_back(double(length(found[pair.found].light.intensity - wanted) / length(wanted)));
+  }
+  return distances;
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, std::size_t(q * double(values.size())))];
+}
+
+struct Row {
+  std::size_t exact = 0, off_by_more = 0, cases = 0;
+  std::vector<double> beyond, position, intensity, seconds, total;
+};
+
+void add_case(Row& row, const std::vector<PointLight>& truth, const SolveResult& result, float diagonal) {
+  const long off = long(result.lights.size()) - long(truth.size());
+  ++row.cases;
+  row.exact += off == 0 ? 1 : 0;
+  row.off_by_more += std::abs(off) > 1 ? 1 : 0;
+  const double noise = std::hypot(result.target_noise, result.verification_noise);
+  row.beyond.push_back(std::sqrt(std::max(0.0, result.relative_l2 * result.relative_l2 - noise * noise)));
+  const Distances distances = match(truth, result.lights, diagonal);
+  row.position.insert(row.position.end(), distances.position.begin(), distances.position.end());
+  row.intensity.insert(row.intensity.end(), distances.intensity.begin(), distances.intensity.end());
+  row.seconds.push_back(result.initial_seconds + result.optimal_seconds);
+  row.total.push_back(result.total_seconds - result.cache_seconds);
+}
+
+void print_row(std::size_t lights, const Row& row) {
+  std::printf("%6zu %7zu %6.0f %8zu %8.2f %7.2f %9.3f %8.3f %9.2f %8.2f %8.2f\n", lights, row.cases,
+              100 * double(row.exact) / double(row.cases), row.off_by_more, 100 * quantile(row.beyond, 0.5),
+              100 * quantile(row.beyond, 1), 100 * quantile(row.position, 0.5), 100 * quantile(row.position, 0.95),
+              100 * quantile(row.intensity, 0.5), quantile(row.seconds, 0.5), quantile(row.total, 0.5));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = parse(argc, argv);
+  const renderer::LoadedScene loaded = renderer::load_gltf(options.scene);
+  const RayTracer tracer(loaded.scene);
+  const Receivers receivers = make_receivers(loaded.scene, {.max_edge = options.max_edge});
+  const Stage stage{tracer, receivers, select_receivers(receivers, evenly_spread(receivers.size(), 1000)),
+                    tracer.bounds().diagonal()};
+  const BakeSettings settings{.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"};
+  const LightGrid grid = make_light_grid(tracer, {});
+  const auto cache = std::filesystem::temp_directory_path() / ("solver_benchmark_" + std::to_string(getpid()) + ".exr");
+  Baker baker(tracer, receivers, grid, settings, 4e9);
+  bake_to_file(baker, cache, {}, {});
+
+  std::printf("%s, %zu receivers, noise %.1f %%, method %s, seed %llu\n", options.scene.c_str(), receivers.size(),
+              100 * options.noise, options.method.c_str(), static_cast<unsigned long long>(options.seed));
+  std::puts("lights   cases exact%  off > 1  beyond%  worst%  position%   95 %  intensity%  seconds  w/o bake");
+  for (const std::size_t count : options.lights) {
+    Row row;
+    for (std::size_t set = 0; set < options.sets; ++set) {
+      const std::uint64_t seed = (options.seed * 100 + count) * 1000 + set;
+      const std::vector<PointLight> truth = random_lights(stage, grid.region, count, seed);
+      const Target target = traced_target(stage, truth, options.noise, seed);
+      SolveOptions solve_options;
+      solve_options.method = options.method == "thesis" ? SolveMethod::kThesis : SolveMethod::kJoint;
+      solve_options.important_vertices = options.important_vertices;
+      const SolveResult result = solve({tracer, target, cache, {}, settings, {}}, solve_options);
+      add_case(row, truth, result, stage.diagonal);
+      if (options.verbose) {
+        std::printf("  set %zu: %zu found, relative L2 %.4f (noise %.4f and %.4f), farthest %.4f %%, %.2f s\n", set,
+                    result.lights.size(), result.relative_l2, result.target_noise, result.verification_noise,
+                    100 * quantile(match(truth, result.lights, stage.diagonal).position, 1), row.seconds.back());
+        for (const StageReport& report : result.stages) std::printf("    %s %.2f", report.name.c_str(), report.seconds);
+        std::puts("");
+        std::fflush(stdout);
+      }
+    }
+    print_row(count, row);
+  }
+  std::filesystem::remove(cache);
+  return 0;
+}
