@@ -18,18 +18,19 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kRounds = 5, kSteps = 12;
-constexpr double kAtRest = 2e-4;                // of the region's diagonal, after a round
+constexpr int kDraftRounds = 5, kSteps = 12;
 constexpr double kStepAtRest = 1e-5;            // of the region's diagonal
 constexpr double kLongestStep = 0.01;           // of the region's diagonal
 constexpr double kOutlier = 3;                  // medians
 constexpr double kFirefly = 10;                 // medians
 constexpr double kLeastScale = 1e-3;            // of a receiver's brightness
 constexpr double kDark = 0.1;                   // brightness that residuals are compared with at least, in means of all
-constexpr std::size_t kPathsPerSample = 16000;  // of all receivers together, over rays per receiver of the bake
-constexpr int kLeastPaths = 16, kMostPaths = 8192;  // per receiver
-constexpr double kDarkest = 1e-20;                  // candela: a channel that shines
-constexpr double kDamping = 1e-9;                   // of the normal matrix' diagonal
+constexpr double kNear = 2e-3;                  // of the region's diagonal: indirect light hardly changes
+constexpr std::size_t kPathsPerSample = 16000;  // of all receivers together, over rays per receiver of the bake …
+constexpr std::size_t kDraft = 8;               // … and a part of them while the lights still move farther
+constexpr int kLeastPaths = 4, kMostPaths = 8192;  // per receiver
+constexpr double kDarkest = 1e-20;                 // candela: a channel that shines
+constexpr double kDamping = 1e-9;                  // of the normal matrix' diagonal
 
 std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
   std::vector<ColumnWithGradient> columns(lights.size());
@@ -45,13 +46,15 @@ struct TracedIndirect {
   Column others;              // all light of the others, their direct light too
 };
 
-TracedIndirect trace_indirect(const ManyReceivers& many, const LightEstimates& lights, const LightEstimates& others) {
+// paths: of all receivers together, over rays per receiver of the bake.
+TracedIndirect trace_indirect(const ManyReceivers& many, const LightEstimates& lights, const LightEstimates& others,
+                              std::size_t paths_per_sample) {
   renderer::Lights all;
   for (const LightEstimates* some : {&lights, &others}) {
     for (const LightEstimate& estimate : *some) all.emplace_back(point_light(estimate));
   }
   const std::vector<renderer::SurfaceSample>& at = many.response.receivers();
-  const std::size_t paths = kPathsPerSample * std::size_t(many.settings.samples) / at.size();
+  const std::size_t paths = paths_per_sample * std::size_t(many.settings.samples) / at.size();
   const renderer::TraceOptions trace{std::clamp(int(paths), kLeastPaths, kMostPaths), many.settings.bounces,
                                      many.settings.seed, false};
   const auto traced = trace_illumination_per_light(many.tracer, at, all, trace, many.control);
@@ -215,6 +218,17 @@ double fit_brightness(const ManyReceivers& many, const Observations& observation
   return relative_error(observations, total_illumination(all, lights, receivers));
 }
 
+// With indirect light as it is where the lights stand when it begins.
+void refine_once(const ManyReceivers& many, const LightEstimates& others, std::size_t paths_per_sample,
+                 PolishedLights& refined) {
+  const TracedIndirect indirect = trace_indirect(many, refined.lights, others, paths_per_sample);
+  Observations observations = many.observations;
+  observations.wanted -= indirect.others;
+  descend(many.response, observations, indirect.unity, refined.lights);
+  refined.error = fit_brightness(many, observations, indirect.unity, refined.lights);
+  ++refined.rounds;
+}
+
 }  // namespace
 
 TransportCache direct_transport(const LightGrid& grid, std::size_t receivers) {
@@ -233,20 +247,17 @@ PolishedLights refine_over_many(const ManyReceivers& many, const LightEstimates&
   PolishedLights refined;
   for (const LightEstimate& light : start) refined.lights.push_back({light.position, light.intensity});
   if (start.empty() || many.response.receiver_count() == 0) return refined;
+  const double near = kNear * double(many.response.grid().region.diagonal());
   double move = std::numeric_limits<double>::infinity();
   LightEstimates earlier;
-  while (move > kAtRest * double(many.response.grid().region.diagonal()) && refined.rounds < kRounds) {
+  while (move > near && refined.rounds < kDraftRounds) {
     const LightEstimates before = refined.lights;
-    Observations observations = many.observations;
-    const TracedIndirect indirect = trace_indirect(many, refined.lights, others);
-    observations.wanted -= indirect.others;
-    descend(many.response, observations, indirect.unity, refined.lights);
+    refine_once(many, others, kPathsPerSample / kDraft, refined);
     come_to_rest(earlier, before, refined.lights);
-    refined.error = fit_brightness(many, observations, indirect.unity, refined.lights);
     move = largest_move(refined.lights, before);
     earlier = before;
-    ++refined.rounds;
   }
+  refine_once(many, others, kPathsPerSample, refined);
   return refined;
 }
 

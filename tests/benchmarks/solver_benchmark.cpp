@@ -214,6 +214,7 @@ int main(int argc, char** argv) {
       const Target target = traced_target(stage, truth, options.noise, seed);
       SolveOptions solve_options;
       solve_options.method = options.method == "thesis" ? SolveMethod::kThesis : SolveMethod::kJoint;
+      solve_options.verification_samples = 32;
       solve_options.important_vertices = options.important_vertices;
       const SolveResult result = solve({tracer, target, cache, {}, settings, {}}, solve_options);
       add_case(row, truth, result, stage.diagonal);
