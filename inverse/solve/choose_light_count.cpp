@@ -13,10 +13,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kMostCuts = 16;          // sizes of the light tree's cuts that are refined
-constexpr double kKnee = 1.25;         // further lights must lower the error by this factor to be believed
+constexpr double kKnee = 1.25;         // further lights must lower an error that is not noise by this factor
+constexpr double kNearNoise = 5;       // times
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
-constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
+constexpr double kClose = 0.1;         // error from which on interpolated indirect light is not good enough
+constexpr int kExactRounds = 1, kExactIterations = 10;
+constexpr int kIdleInsertions = 2;  // insertions in a row that may gain nothing
 
 class Search {
  public:
@@ -35,6 +38,7 @@ class Search {
   struct Candidate {
     LightEstimates lights;
     double error = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd held_out{};  // residuals; empty: not evaluated
   };
 
   int most_lights() const { return options_.exact_lights > 0 ? options_.exact_lights : options_.max_lights; }
@@ -48,12 +52,21 @@ class Search {
   void consider(const LightEstimates& start) {
     JointRefinement refined = refine_joint(response_, observations_, start);
     ++refinements_;
+    if (options_.exact != nullptr && refined.error < kClose) refine_exactly(refined);
     std::erase_if(refined.lights, [](const LightEstimate& l) { return !(l.intensity > 0).any(); });
     const std::size_t count = refined.lights.size();
     if (count == 0) return;
     if (best_.size() <= count) best_.resize(count + 1);
     if (!(refined.error < best_[count].error)) return;
-    best_[count] = {std::move(refined.lights), refined.error};
+    best_[count] = {std::move(refined.lights), refined.error, {}};
+  }
+
+  // Between the lights of a grid indirect light is known less well than targets are.
+  void refine_exactly(JointRefinement& refined) {
+    for (int round = 0; round < kExactRounds; ++round) {
+      options_.exact->correct(response_, refined.lights);
+      refined = refine_joint(response_, observations_, refined.lights, {.max_iterations = kExactIterations});
+    }
   }
 
   void refine_cuts() {
@@ -63,6 +76,13 @@ class Search {
     }
   }
 
+  // What is left is little more than noise: a fit has no more to tell, and held-out receivers have.
+  bool noise_is_left() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Candidate& c : best_) least = std::min(least, c.error);
+    return options_.held_out != nullptr && least <= kNearNoise * observations_.noise;
+  }
+
   // The smallest size whose error no larger set lowers by more than the knee's factor, nor by more than noise explains.
   std::size_t knee() const {
     double least = std::numeric_limits<double>::infinity();
@@ -70,6 +90,22 @@ class Search {
     const double enough = std::max({kKnee * least, kNoiseMargin * observations_.noise, kRounding});
     std::size_t size = 1;
     while (size + 1 < best_.size() && !(best_[size].error <= enough)) ++size;
+    return size;
+  }
+
+  const Eigen::VectorXd& held_out_residuals(Candidate& candidate) const {
+    if (candidate.held_out.size() == 0) candidate.held_out = options_.held_out->residuals(candidate.lights);
+    return candidate.held_out;
+  }
+
+  // From the knee on, by as many lights as held-out receivers clearly see.
+  std::size_t best_size() {
+    std::size_t size = knee();
+    if (!noise_is_left()) return size;
+    for (std::size_t larger = size + 1; larger < best_.size(); ++larger) {
+      if (best_[larger].lights.empty()) continue;
+      if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]))) size = larger;
+    }
     return size;
   }
 
@@ -85,12 +121,15 @@ class Search {
   void insert_lights() {
     if (best_.size() < 2) consider_insertions({});
     int idle = 0;
-    for (std::size_t size = knee(); idle < kIdleInsertions && int(size) < most_lights() && !out_of_time(); ++size) {
+    for (std::size_t size = best_size(); idle < kIdleInsertions && int(size) < most_lights() && !out_of_time();
+         ++size) {
       if (size >= best_.size() || best_[size].lights.empty()) break;
-      const double before = best_[knee()].error;
-      if (before <= observations_.noise * kNoiseMargin && options_.exact_lights == 0) break;
+      const std::size_t before = best_size();
+      const double error = best_[before].error;
+      if (error <= observations_.noise * kNoiseMargin && options_.exact_lights == 0) break;
       consider_insertions(best_[size].lights);
-      idle = best_.size() > size + 1 && best_[size + 1].error * kKnee < before ? 0 : idle + 1;
+      const bool gained = best_size() > before || (best_.size() > size + 1 && best_[size + 1].error * kKnee < error);
+      idle = gained ? 0 : idle + 1;
     }
   }
 
@@ -119,9 +158,9 @@ class Search {
     return {std::move(lights), error};
   }
 
-  LightCountResult result() const {
+  LightCountResult result() {
     LightCountResult r;
-    std::size_t size = best_.size() < 2 ? 0 : knee();
+    std::size_t size = best_.size() < 2 ? 0 : best_size();
     if (options_.exact_lights > 0) size = std::min(std::size_t(options_.exact_lights), best_.size() - 1);
     if (size > 0) r.lights = best_[size].lights, r.error = best_[size].error;
     for (std::size_t n = 1; n < best_.size(); ++n) r.error_curve.push_back(best_[n].error);

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "inverse/solve/exact_indirect.h"
+#include "inverse/solve/held_out.h"
 #include "inverse/solve/light_clusters.h"
 #include "inverse/solve/refine_joint.h"
 
@@ -11,8 +13,10 @@ namespace chiaro::inverse {
 
 struct LightCountOptions {
   int max_lights = 32;
-  int exact_lights = 0;   // 0: chosen here
-  double time_limit = 0;  // seconds; 0: none
+  int exact_lights = 0;                  // 0: chosen here
+  double time_limit = 0;                 // seconds; 0: none
+  const ExactIndirect* exact = nullptr;  // sets that come close are judged by it; absent: by interpolated light alone
+  const HeldOut* held_out = nullptr;     // tell how many lights there are; absent: the error of the fit does
 };
 
 struct LightCountResult {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -25,6 +26,7 @@ using renderer::Error;
 constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
 constexpr double kVerificationPaths = 2e7;        // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
+constexpr std::size_t kHeldOut = 1500;   // receivers that tell how many lights there are
 constexpr int kFixedSamples = 512;       // per important vertex
 constexpr int kFixedSamplesOfMany = 32;  // per receiver of the last refinement …
 constexpr std::size_t kMany = 50000;     // … of so many at most
@@ -70,6 +72,16 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   std::vector<std::size_t> indices(count);
   std::iota(indices.begin(), indices.end(), std::size_t{0});
   return indices;
+}
+
+std::unique_ptr<HeldOut> hold_out(const SolveProblem& problem, BakeSettings settings, const SolveOptions& options,
+                                  const renderer::Control& control) {
+  const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
+  const auto samples = select(problem.target.receivers.samples, draw.chosen);
+  settings.seed = fresh_seed(options.seed, 5);
+  Observations observations =
+      observe_target(problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, options, control));
+  return std::make_unique<HeldOut>(problem.tracer, samples, std::move(observations), settings);
 }
 
 // Brightest contribution first.
@@ -139,6 +151,7 @@ struct JointSearch {
   const ExactIndirect& exact;
   const Observations& searched;  // no receiver hides the light of all others
   const Observations& judged;    // as (3.6) judges them
+  const HeldOut& held_out;
 };
 
 // The lights refined over many receivers. Those beside surfaces, whose neighbours may not be among the many, stay.
@@ -175,7 +188,7 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const LightEstimates start = joined(beside_surfaces, cut.lights);
 
   const LightCountOptions count_options{options.max_lights - already, std::max(0, options.exact_lights - already),
-                                        options.time_limit};
+                                        options.time_limit, &search.exact, already > 0 ? nullptr : &search.held_out};
   const auto find_the_rest = [&] {
     if (already >= most_lights(options)) return LightCountResult{};
     return choose_light_count(response, remaining, tree, count_options);
@@ -257,10 +270,13 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const Observations judged = joint ? standing_for_all(published) : published;
   Observations searched = published;
   std::optional<ExactIndirect> exact;
+  std::unique_ptr<HeldOut> held_out;
   LightEstimates beside_surfaces;
   if (joint) {
     exact.emplace(problem.tracer, samples, transport.cache.settings);
     clock.finish("exact_indirect", {});
+    held_out = hold_out(problem, transport.cache.settings, options, control);
+    clock.finish("held_out", {});
     beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
     searched = with_capped_weights(published);
     result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
@@ -277,9 +293,10 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const LightTree tree = make_light_tree(response, remaining, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
-  const Optimum optimum = joint ? optimize_jointly({problem, options, control, response, *exact, searched, judged},
-                                                   beside_surfaces, tree, clock)
-                                : optimize_as_published(response, published, tree, options, clock);
+  const Optimum optimum =
+      joint ? optimize_jointly({problem, options, control, response, *exact, searched, judged, *held_out},
+                               beside_surfaces, tree, clock)
+            : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
   result.lights = found_lights(response, judged, optimum.lights);

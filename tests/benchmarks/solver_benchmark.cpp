@@ -222,8 +222,11 @@ int main(int argc, char** argv) {
         std::printf("  set %zu: %zu found, relative L2 %.4f (noise %.4f and %.4f), farthest %.4f %%, %.2f s\n", set,
                     result.lights.size(), result.relative_l2, result.target_noise, result.verification_noise,
                     100 * quantile(match(truth, result.lights, stage.diagonal).position, 1), row.seconds.back());
-        for (const StageReport& report : result.stages) std::printf("    %s %.2f", report.name.c_str(), report.seconds);
-        std::puts("");
+        for (const StageReport& report : result.stages) {
+          std::printf("    %-22s %6.2f s", report.name.c_str(), report.seconds);
+          for (const auto& [name, value] : report.figures) std::printf("  %s %.4g", name.c_str(), value);
+          std::puts("");
+        }
         std::fflush(stdout);
       }
     }

@@ -1,0 +1,83 @@
+#include "inverse/solve/held_out.h"
+
+#include <gtest/gtest.h>
+
+#include "inverse/transport/eigen_vectors.h"
+#include "inverse/transport/receivers.h"
+#include "renderer/core/sampler.h"
+#include "tests/support/code_scenes.h"
+
+namespace chiaro::inverse {
+namespace {
+
+// Of the room's floor and walls, a receiver every few decimetres.
+std::vector<renderer::SurfaceSample> receivers_of(const renderer::Scene& scene) {
+  return make_receivers(scene, {.max_edge = 0.5F}).samples;
+}
+
+Observations observations_of(const Column& target) {
+  Observations o;
+  o.target = o.wanted = target;
+  o.sqrt_weight = o.stands_for = Eigen::VectorXd::Ones(target.rows());
+  o.standard_error = Eigen::VectorXd::Zero(target.rows());
+  o.measure_target();
+  return o;
+}
+
+class HeldOutRoom : public ::testing::Test {
+ protected:
+  HeldOutRoom() {
+    test::add_mesh(scene_, test::room({4, 3, 4}, 2), test::lambert({0.6F, 0.5F, 0.4F}), "room");
+    tracer_.emplace(scene_);
+    receivers_ = receivers_of(scene_);
+    const renderer::Lights lights{point_light(lights_[0]), point_light(lights_[1])};
+    const auto traced = trace_illumination(*tracer_, receivers_, lights, {512, -1, 9, false}).value;
+    Column target(Eigen::Index(traced.size()), 3);
+    for (std::size_t i = 0; i < traced.size(); ++i) target.row(Eigen::Index(i)) = to_eigen(traced[i]).transpose();
+    held_out_.emplace(*tracer_, receivers_, observations_of(target), settings_);
+  }
+
+  renderer::Scene scene_;
+  std::optional<renderer::RayTracer> tracer_;
+  std::vector<renderer::SurfaceSample> receivers_;
+  const BakeSettings settings_{.samples = 256, .bounces = -1, .seed = 3, .materials = "gltf"};
+  // The second is dim.
+  const LightEstimates lights_{{{1.2, 2.1, 1.5}, {10, 8, 6}}, {{3, 1, 2.6}, {0.3, 0.5, 0.7}}};
+  std::optional<HeldOut> held_out_;
+};
+
+TEST_F(HeldOutRoom, TheRightLightsLeaveLittle) {
+  const double target = held_out_->residuals({}).norm();
+  EXPECT_LT(held_out_->residuals(lights_).norm(), 0.03 * target);
+  EXPECT_GT(held_out_->residuals({lights_[0]}).norm(), 0.05 * target);
+}
+
+TEST_F(HeldOutRoom, ALightThatIsThereIsClearlySeen) {
+  const Eigen::VectorXd without = held_out_->residuals({lights_[0]}), with = held_out_->residuals(lights_);
+  EXPECT_TRUE(clearly_smaller(without, with));
+  EXPECT_FALSE(clearly_smaller(with, without));
+  EXPECT_FALSE(clearly_smaller(with, with));
+}
+
+TEST_F(HeldOutRoom, ALightThatFitsNoiseIsNot) {
+  LightEstimates more = lights_;
+  more.push_back({{3.8, 2.8, 0.3}, {0.02, 0.02, 0.02}});
+  EXPECT_FALSE(clearly_smaller(held_out_->residuals(lights_), held_out_->residuals(more)));
+}
+
+TEST(HeldOut, NoiseAloneIsHardlyEverClear) {
+  int clear = 0;
+  for (std::uint32_t k = 0; k < 1000; ++k) {
+    Eigen::VectorXd a(200), b(200);
+    for (int i = 0; i < 200; ++i) {
+      renderer::Sampler sampler(4, k, std::uint32_t(i));
+      a[i] = double(sampler.next_1d());
+      b[i] = double(sampler.next_1d());
+    }
+    clear += clearly_smaller(a, b) ? 1 : 0;
+  }
+  EXPECT_LE(clear, 8);  // 1.35 expected at three standard errors; more has a chance of 1 in 10⁵
+}
+
+}  // namespace
+}  // namespace chiaro::inverse
