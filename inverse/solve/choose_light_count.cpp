@@ -14,11 +14,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kMostCuts = 16;          // sizes of the light tree's cuts that are refined
 constexpr double kKnee = 1.25;         // further lights must lower an error that is not noise by this factor
-constexpr double kNearNoise = 5;       // times
+constexpr double kNearNoise = 5;       // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
 constexpr double kClose = 0.1;         // error from which on interpolated indirect light is not good enough
-constexpr int kExactRounds = 1, kExactIterations = 10;
+constexpr int kExactIterations = 10;
 constexpr int kIdleInsertions = 2;  // insertions in a row that may gain nothing
 
 class Search {
@@ -63,10 +63,8 @@ class Search {
 
   // Between the lights of a grid indirect light is known less well than targets are.
   void refine_exactly(JointRefinement& refined) {
-    for (int round = 0; round < kExactRounds; ++round) {
-      options_.exact->correct(response_, refined.lights);
-      refined = refine_joint(response_, observations_, refined.lights, {.max_iterations = kExactIterations});
-    }
+    options_.exact->correct(response_, refined.lights);
+    refined = refine_joint(response_, observations_, refined.lights, {.max_iterations = kExactIterations});
   }
 
   void refine_cuts() {
@@ -76,18 +74,15 @@ class Search {
     }
   }
 
-  // What is left is little more than noise: a fit has no more to tell, and held-out receivers have.
-  bool noise_is_left() const {
+  double least_error() const {
     double least = std::numeric_limits<double>::infinity();
     for (const Candidate& c : best_) least = std::min(least, c.error);
-    return options_.held_out != nullptr && least <= kNearNoise * observations_.noise;
+    return least;
   }
 
   // The smallest size whose error no larger set lowers by more than the knee's factor, nor by more than noise explains.
   std::size_t knee() const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Candidate& c : best_) least = std::min(least, c.error);
-    const double enough = std::max({kKnee * least, kNoiseMargin * observations_.noise, kRounding});
+    const double enough = std::max({kKnee * least_error(), kNoiseMargin * observations_.noise, kRounding});
     std::size_t size = 1;
     while (size + 1 < best_.size() && !(best_[size].error <= enough)) ++size;
     return size;
@@ -98,10 +93,11 @@ class Search {
     return candidate.held_out;
   }
 
-  // From the knee on, by as many lights as held-out receivers clearly see.
+  // Where little more than noise is left a fit has no more to tell: from the knee on, by as many lights as held-out
+  // receivers clearly see.
   std::size_t best_size() {
     std::size_t size = knee();
-    if (!noise_is_left()) return size;
+    if (options_.held_out == nullptr || least_error() > kNearNoise * observations_.noise) return size;
     for (std::size_t larger = size + 1; larger < best_.size(); ++larger) {
       if (best_[larger].lights.empty()) continue;
       if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]))) size = larger;

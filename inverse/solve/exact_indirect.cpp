@@ -13,13 +13,11 @@ constexpr int kPointsPerSample = 16;                 // gather points over rays
 constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …
 constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver
 
-// Makes the light's indirect illumination indirect(receiver, channel), where it stands now.
-template <class Indirect>
-void set_correction(const LightResponse& response, LightEstimate& light, std::size_t receivers,
-                    const Indirect& indirect) {
+// Makes this the light's indirect illumination of the receivers, where it stands now.
+void set_correction(const LightResponse& response, LightEstimate& light, const std::vector<Vec3f>& indirect) {
   light.correction = -response.interpolated_indirect(light.position);
-  for (std::size_t i = 0; i < receivers; ++i) {
-    for (int c = 0; c < 3; ++c) light.correction(Eigen::Index(i), c) += double(indirect(i, c));
+  for (std::size_t i = 0; i < indirect.size(); ++i) {
+    light.correction.row(Eigen::Index(i)) += to_eigen(indirect[i]).transpose();
   }
 }
 
@@ -39,23 +37,8 @@ ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vecto
       gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
 
 void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
-  const auto correct_some = [&](std::size_t first, std::size_t count, const auto& illumination) {
-    std::vector<Vec3f> positions;
-    for (std::size_t l = 0; l < count; ++l) positions.push_back(to_vec3f(lights[first + l].position));
-    const auto exact = illumination(tracer_, gather_, positions);
-    for (std::size_t l = 0; l < count; ++l) {
-      set_correction(response, lights[first + l], exact.size(),
-                     [&](std::size_t i, int c) { return exact[i].channel[c][l]; });
-    }
-  };
-  for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
-    const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
-    if (count <= LightQuad::kLanes) {
-      correct_some(first, count, indirect_illumination_of_few);
-    } else {
-      correct_some(first, count, indirect_illumination);
-    }
-  }
+  const auto exact = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));
+  for (std::size_t j = 0; j < lights.size(); ++j) set_correction(response, lights[j], exact[j]);
 }
 
 void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimates& lights) const {
@@ -63,8 +46,7 @@ void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimat
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples);
   for (LightEstimate& light : lights) {
-    const std::vector<Vec3f> indirect = traced(response, all, light.position, paths / lights.size());
-    set_correction(response, light, indirect.size(), [&](std::size_t i, int c) { return indirect[i][c]; });
+    set_correction(response, light, traced(response, all, light.position, paths / lights.size()));
   }
 }
 

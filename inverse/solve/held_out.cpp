@@ -29,20 +29,14 @@ HeldOut::HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::
       response_(tracer, receivers, nothing_) {}
 
 Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights) const {
+  const auto indirect = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));
   Column left = -observations_.wanted;
-  for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
-    const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
-    std::vector<Vec3f> positions;
-    for (std::size_t l = 0; l < count; ++l) positions.push_back(to_vec3f(lights[first + l].position));
-    const std::vector<LightBlock> indirect = indirect_illumination(tracer_, gather_, positions);
-    for (std::size_t l = 0; l < count; ++l) {
-      const LightEstimate& light = lights[first + l];
-      Column unity = response_.direct(light.position);
-      for (std::size_t i = 0; i < indirect.size(); ++i) {
-        for (int c = 0; c < 3; ++c) unity(Eigen::Index(i), c) += double(indirect[i].channel[c][l]);
-      }
-      left += unity * light.intensity.matrix().asDiagonal();
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    Column unity = response_.direct(lights[j].position);
+    for (std::size_t i = 0; i < indirect[j].size(); ++i) {
+      unity.row(Eigen::Index(i)) += to_eigen(indirect[j][i]).transpose();
     }
+    left += unity * lights[j].intensity.matrix().asDiagonal();
   }
   return (observations_.sqrt_weight.asDiagonal() * left).rowwise().norm();
 }

@@ -36,6 +36,12 @@ renderer::PointLight point_light(const LightEstimate& estimate) {
   return light;
 }
 
+std::vector<Vec3f> light_positions(const LightEstimates& lights) {
+  std::vector<Vec3f> positions;
+  for (const LightEstimate& light : lights) positions.push_back(to_vec3f(light.position));
+  return positions;
+}
+
 void Observations::measure_target() {
   target_norm = (sqrt_weight.asDiagonal() * target).norm();
   noise = target_norm > 0 ? std::sqrt(3.0) * sqrt_weight.cwiseProduct(standard_error).norm() / target_norm : 0;

@@ -37,6 +37,7 @@ struct LightEstimate {
 using LightEstimates = std::vector<LightEstimate>;
 
 renderer::PointLight point_light(const LightEstimate& estimate);
+std::vector<Vec3f> light_positions(const LightEstimates& lights);
 
 // ‖ weighted column times intensity ‖: the light's contribution (3.5).
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity);

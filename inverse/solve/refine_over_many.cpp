@@ -46,7 +46,7 @@ struct TracedIndirect {
   Column others;              // all light of the others, their direct light too
 };
 
-// paths: of all receivers together, over rays per receiver of the bake.
+// paths_per_sample: of all receivers together, over rays per receiver of the bake.
 TracedIndirect trace_indirect(const ManyReceivers& many, const LightEstimates& lights, const LightEstimates& others,
                               std::size_t paths_per_sample) {
   renderer::Lights all;

@@ -151,7 +151,7 @@ struct JointSearch {
   const ExactIndirect& exact;
   const Observations& searched;  // no receiver hides the light of all others
   const Observations& judged;    // as (3.6) judges them
-  const HeldOut& held_out;
+  const HeldOut* held_out;       // absent where lights beside surfaces were found
 };
 
 // The lights refined over many receivers. Those beside surfaces, whose neighbours may not be among the many, stay.
@@ -188,7 +188,7 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const LightEstimates start = joined(beside_surfaces, cut.lights);
 
   const LightCountOptions count_options{options.max_lights - already, std::max(0, options.exact_lights - already),
-                                        options.time_limit, &search.exact, already > 0 ? nullptr : &search.held_out};
+                                        options.time_limit, &search.exact, search.held_out};
   const auto find_the_rest = [&] {
     if (already >= most_lights(options)) return LightCountResult{};
     return choose_light_count(response, remaining, tree, count_options);
@@ -275,11 +275,13 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   if (joint) {
     exact.emplace(problem.tracer, samples, transport.cache.settings);
     clock.finish("exact_indirect", {});
-    held_out = hold_out(problem, transport.cache.settings, options, control);
-    clock.finish("held_out", {});
     beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
     searched = with_capped_weights(published);
     result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
+    if (beside_surfaces.empty()) {
+      held_out = hold_out(problem, transport.cache.settings, options, control);
+      clock.finish("held_out", {});
+    }
   }
 
   const Observations remaining = less(searched, response, beside_surfaces);
@@ -294,7 +296,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
   const Optimum optimum =
-      joint ? optimize_jointly({problem, options, control, response, *exact, searched, judged, *held_out},
+      joint ? optimize_jointly({problem, options, control, response, *exact, searched, judged, held_out.get()},
                                beside_surfaces, tree, clock)
             : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;

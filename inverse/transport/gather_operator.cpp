@@ -211,6 +211,14 @@ std::vector<Lanes> from_gather_points(const GatherOperator& gather, const std::v
   return result;
 }
 
+template <class Lanes>
+void append_lanes(const std::vector<Lanes>& illumination, std::size_t count, std::vector<std::vector<Vec3f>>& all) {
+  for (std::size_t l = 0; l < count; ++l) {
+    std::vector<Vec3f>& of_light = all.emplace_back();
+    for (const Lanes& at : illumination) of_light.push_back({at.channel[0][l], at.channel[1][l], at.channel[2][l]});
+  }
+}
+
 // In parallel: body(first, last) for parts of 0 … count − 1.
 template <class Body>
 void for_each_chunk(std::size_t count, const Body& body) {
@@ -282,9 +290,19 @@ std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const Gat
   return from_gather_points(gather, direct_at_gather_points<LightBlock>(tracer, gather, lights));
 }
 
-std::vector<LightQuad> indirect_illumination_of_few(const RayTracer& tracer, const GatherOperator& gather,
-                                                    std::span<const Vec3f> lights) {
-  return from_gather_points(gather, direct_at_gather_points<LightQuad>(tracer, gather, lights));
+std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& tracer, const GatherOperator& gather,
+                                                               std::span<const Vec3f> lights) {
+  std::vector<std::vector<Vec3f>> all;
+  for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
+    const auto some = lights.subspan(first, std::min<std::size_t>(kLightBlock, lights.size() - first));
+    if (some.size() <= LightQuad::kLanes) {  // a third of the time of a block
+      append_lanes(from_gather_points(gather, direct_at_gather_points<LightQuad>(tracer, gather, some)), some.size(),
+                   all);
+    } else {
+      append_lanes(indirect_illumination(tracer, gather, some), some.size(), all);
+    }
+  }
+  return all;
 }
 
 std::vector<LightQuad> indirect_illumination_with_gradient(const RayTracer& tracer, const GatherOperator& gather,

@@ -69,9 +69,10 @@ std::vector<LightBlock> illumination_of_gather_points(const renderer::RayTracer&
 std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const renderer::Vec3f> lights);
 
-// Up to four, which take a third of the time of a block.
-std::vector<LightQuad> indirect_illumination_of_few(const renderer::RayTracer& tracer, const GatherOperator& gather,
-                                                    std::span<const renderer::Vec3f> lights);
+// The same of any number of lights, by light and receiver.
+std::vector<std::vector<renderer::Vec3f>> indirect_illumination_by_light(const renderer::RayTracer& tracer,
+                                                                         const GatherOperator& gather,
+                                                                         std::span<const renderer::Vec3f> lights);
 
 // Indirect illumination of all receivers under one unity light of any kind, for a shadow ray per gather point and
 // little else: lane 0; lanes 1, 2, 3: its derivative by the light's x, y, z (per metre) where no shadow edge moves.

@@ -25,7 +25,6 @@ constexpr double kFirstLights = 64;
 constexpr double kPower = 1.3, kLeastStep = 0.5, kMostStep = 0.85;
 
 constexpr double kLocalError = 4;         // of a single position, over the median's
-constexpr int kTestsPerCell = 1;          // positions
 constexpr double kDarkest = 0.01;         // of the median light: what lights less is not worth finer cells
 constexpr double kMostFinerLights = 1;    // over those of the nodes
 constexpr float kTouching = 0.02F;        // of a finer cell
@@ -42,9 +41,7 @@ class InterpolationTest {
                                      {.samples = settings.samples,
                                       .points_per_sample = kPointsPerSample,
                                       .bounces = settings.bounces,
-                                      .seed = settings.seed})) {
-    nothing_.receiver_count = samples_.size();
-  }
+                                      .seed = settings.seed})) {}
 
   // What a cache has of one light.
   struct Row {
@@ -55,15 +52,9 @@ class InterpolationTest {
   std::vector<Row> rows_of(std::span<const Vec3f> lights) const {
     std::vector<Row> rows(lights.size(),
                           {std::vector<std::uint8_t>(samples_.size()), std::vector<Vec3f>(samples_.size())});
-    for (std::size_t first = 0; first < lights.size() && !gather_.points.empty(); first += kLightBlock) {
-      const std::size_t count = std::min<std::size_t>(kLightBlock, lights.size() - first);
-      const std::vector<LightBlock> blocks = indirect_illumination(tracer_, gather_, lights.subspan(first, count));
-      for (std::size_t l = 0; l < count; ++l) {
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
-          const auto& channel = blocks[i].channel;
-          rows[first + l].indirect[i] = {channel[0][l], channel[1][l], channel[2][l]};
-        }
-      }
+    if (!gather_.points.empty()) {
+      auto indirect = indirect_illumination_by_light(tracer_, gather_, lights);
+      for (std::size_t l = 0; l < lights.size(); ++l) rows[l].indirect = std::move(indirect[l]);
     }
     renderer::parallel_for(lights.size(), [&](std::size_t l) {
       for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -98,8 +89,9 @@ class InterpolationTest {
   // Relative, of each position; 0 where there is no light at all. rows: of the grid's lights.
   std::vector<double> errors(const LightGrid& grid, const std::vector<const Row*>& rows,
                              const Positions& positions) const {
-    TransportCache cache = nothing_;
+    TransportCache cache;
     cache.grid = grid;
+    cache.receiver_count = samples_.size();
     for (const Row* row : rows) {
       cache.visibility.insert(cache.visibility.end(), row->visibility.begin(), row->visibility.end());
       cache.indirect.insert(cache.indirect.end(), row->indirect.begin(), row->indirect.end());
@@ -118,7 +110,6 @@ class InterpolationTest {
   const RayTracer& tracer_;
   std::vector<renderer::SurfaceSample> samples_;
   GatherOperator gather_;
-  TransportCache nothing_;
 };
 
 using Row = InterpolationTest::Row;
@@ -184,8 +175,7 @@ class Refinement {
  public:
   Refinement(const RayTracer& tracer, const InterpolationTest& test, LightGrid grid, double most_error,
              const BakeSettings& settings)
-      : tracer_(tracer),
-        free_space_(tracer),
+      : free_space_(tracer),
         test_(test),
         grid_(std::move(grid)),
         most_error_(most_error),
@@ -209,53 +199,38 @@ class Refinement {
   }
 
  private:
-  struct Tests {
-    std::vector<std::size_t> cell;  // of each position
-    InterpolationTest::Positions positions;
-  };
-
-  Tests tests_of(const std::vector<GridCell>& cells) const {
-    std::vector<std::vector<Vec3f>> positions(cells.size());
-    renderer::parallel_for(cells.size(), [&](std::size_t c) {
-      const Box3f bounds = bounds_of(grid_, cells[c]);
-      const std::uint64_t seed = seed_ + std::uint64_t(cells[c].level);
-      for (std::uint32_t k = 0; k < kMostTries && positions[c].size() < kTestsPerCell; ++k) {
-        renderer::Sampler sampler(seed, std::uint32_t(number_of(grid_, cells[c])), k);
-        const renderer::Vec2f xy = sampler.next_2d();
-        const Vec3f at = bounds.min + bounds.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
-        if (free_space_.contains(at, kTouching * bounds.diagonal())) positions[c].push_back(at);
-      }
-    });
-    Tests tests;
-    std::vector<Vec3f> all;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      for (const Vec3f at : positions[c]) {
-        tests.cell.push_back(c);
-        all.push_back(at);
-      }
+  // In free space; absent where none is found.
+  std::optional<Vec3f> test_position(const GridCell& cell) const {
+    const Box3f bounds = bounds_of(grid_, cell);
+    for (std::uint32_t k = 0; k < kMostTries; ++k) {
+      renderer::Sampler sampler(seed_ + std::uint64_t(cell.level), std::uint32_t(number_of(grid_, cell)), k);
+      const Vec3f at = random_position(bounds, sampler);
+      if (free_space_.contains(at, kTouching * bounds.diagonal())) return at;
     }
-    tests.positions = test_.exact(std::move(all));
-    return tests;
+    return std::nullopt;
   }
 
   // The worst of them first, as many as there may be lights.
   std::vector<GridCell> wrong_ones(const std::vector<GridCell>& cells) {
-    const Tests tests = tests_of(cells);
-    if (!bright_) bright_ = kDarkest * median(tests.positions.norm);
-    const std::vector<double> errors = test_.errors(grid_, rows(), tests.positions);
-    std::vector<double> worst(cells.size(), 0);
-    for (std::size_t k = 0; k < errors.size(); ++k) {
-      if (tests.positions.norm[k] > *bright_) worst[tests.cell[k]] = std::max(worst[tests.cell[k]], errors[k]);
-    }
-    std::vector<std::size_t> order;
+    std::vector<std::optional<Vec3f>> place(cells.size());
+    renderer::parallel_for(cells.size(), [&](std::size_t c) { place[c] = test_position(cells[c]); });
+    std::vector<std::size_t> tested;
+    std::vector<Vec3f> positions;
     for (std::size_t c = 0; c < cells.size(); ++c) {
-      if (worst[c] > most_error_) order.push_back(c);
+      if (place[c]) tested.push_back(c), positions.push_back(*place[c]);
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return worst[a] > worst[b]; });
+    const auto exact = test_.exact(std::move(positions));
+    if (!bright_) bright_ = kDarkest * median(exact.norm);
+    const std::vector<double> errors = test_.errors(grid_, rows(), exact);
+    std::vector<std::size_t> order;  // of the tests
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      if (exact.norm[k] > *bright_ && errors[k] > most_error_) order.push_back(k);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
     const double room = kMostFinerLights * double(grid_.node_light_count()) - double(rows_of_finer_.size());
     order.resize(std::min(order.size(), std::size_t(std::max(0.0, room / 8))));
     std::vector<GridCell> wrong;
-    for (const std::size_t c : order) wrong.push_back(cells[c]);
+    for (const std::size_t k : order) wrong.push_back(cells[tested[k]]);
     return wrong;
   }
 
@@ -282,7 +257,6 @@ class Refinement {
     return all;
   }
 
-  const RayTracer& tracer_;
   FreeSpace free_space_;
   const InterpolationTest& test_;
   LightGrid grid_;

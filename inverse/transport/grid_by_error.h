@@ -9,7 +9,7 @@ namespace chiaro::inverse {
 
 // As make_light_grid; where options.error is set, as coarse as it allows. That is the median over random positions of
 // the relative L2 distance between interpolated and exact illumination, at some of the receivers. Cells where it is
-// three times as far are halved, up to kMostLevels times, for up to as many further lights. Error where the
+// four times as far are halved, up to kMostLevels times, for up to as many further lights. Error where the
 // median takes more lights than kMostGridLights.
 LightGrid choose_light_grid(const renderer::RayTracer& tracer, const Receivers& receivers,
                             const LightGridOptions& options, const BakeSettings& settings,

@@ -29,19 +29,14 @@ Vector3d into_region(const Box3f& region, const Vector3d& position) {
 }
 
 // The whole cell that a position is in.
-std::array<int, 3> cell_at(const LightGrid& grid, const Vector3d& position) {
-  std::array<int, 3> cell{};
+GridCell cell_at(const LightGrid& grid, const Vector3d& position) {
+  GridCell cell;
   for (int a = 0; a < 3; ++a) {
     const auto spacing = double(grid.spacing[a]);
     const double at = spacing > 0 ? (position[a] - double(grid.region.min[a])) / spacing : 0;
-    cell[a] = std::clamp(int(at), 0, grid.counts[a] - 1);
+    cell.at[a] = std::uint32_t(std::clamp(int(at), 0, grid.counts[a] - 1));
   }
   return cell;
-}
-
-std::size_t node_at(const LightGrid& grid, const std::array<int, 3>& cell) {
-  return std::size_t(cell[0]) +
-         std::size_t(grid.counts[0]) * (std::size_t(cell[1]) + std::size_t(grid.counts[1]) * std::size_t(cell[2]));
 }
 
 void normalise(std::vector<GridWeight>& weights) {
@@ -57,23 +52,21 @@ void normalise(std::vector<GridWeight>& weights) {
 }  // namespace
 
 GridInterpolation::GridInterpolation(const renderer::RayTracer& tracer, const LightGrid& grid)
-    : tracer_(tracer), grid_(grid), finer_of_node_(grid.finer.empty() ? 0 : grid.light_of_node.size()) {
+    : tracer_(tracer), grid_(grid), lights_of_cell_(grid.light_of_node.size()) {
   for (std::size_t k = 0; k < grid.finer.size(); ++k) {
     const GridCell cell = cell_of(grid, grid.finer[k]);
-    finer_of_node_[node_of(grid, cell)].push_back({grid.node_light_count() + k, cell.level});
+    lights_of_cell_[node_of(grid, cell)].push_back({grid.node_light_count() + k, cell.level});
   }
-}
-
-std::vector<GridInterpolation::Neighbour> GridInterpolation::lights_of_cell(std::size_t node) const {
-  if (!finer_of_node_.empty() && !finer_of_node_[node].empty()) return finer_of_node_[node];
-  if (grid_.light_of_node[node] < 0) return {};
-  return {{std::size_t(grid_.light_of_node[node]), 0}};
+  for (std::size_t node = 0; node < lights_of_cell_.size(); ++node) {
+    const bool whole = lights_of_cell_[node].empty() && grid.light_of_node[node] >= 0;
+    if (whole) lights_of_cell_[node] = {{std::size_t(grid.light_of_node[node]), 0}};
+  }
 }
 
 int GridInterpolation::level_at(std::size_t node, const Vector3d& position) const {
   int level = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (const Neighbour& light : lights_of_cell(node)) {
+  for (const Neighbour& light : lights_of_cell_[node]) {
     const Vector3d offset = position - to_eigen(grid_.positions[light.light]);
     double distance = 0;  // in cells
     for (int a = 0; a < 3; ++a) {
@@ -97,8 +90,8 @@ std::size_t GridInterpolation::nearest_light(const Vector3d& position) const {
 
 std::vector<GridWeight> GridInterpolation::weights(const Vector3d& position) const {
   const Vector3d x = into_region(grid_.region, position);
-  const std::array<int, 3> cell = cell_at(grid_, x);
-  const Vector3d width = to_eigen(grid_.spacing) / double(1 << level_at(node_at(grid_, cell), x));
+  const GridCell cell = cell_at(grid_, x);
+  const Vector3d width = to_eigen(grid_.spacing) / double(1 << level_at(node_of(grid_, cell), x));
   std::vector<GridWeight> weights;
   double total = 0;
   const auto add = [&](const Neighbour& light) {
@@ -117,14 +110,15 @@ std::vector<GridWeight> GridInterpolation::weights(const Vector3d& position) con
     weights.push_back({light.light, volume * value, volume * gradient});
     total += weights.back().value;
   };
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::array<int, 3> at{cell[0] + dx, cell[1] + dy, cell[2] + dz};
-        bool inside = true;
-        for (int a = 0; a < 3; ++a) inside = inside && at[a] >= 0 && at[a] < grid_.counts[a];
-        if (!inside) continue;
-        for (const Neighbour& light : lights_of_cell(node_at(grid_, at))) add(light);
+  std::array<std::uint32_t, 3> low{}, high{};  // of the cells around
+  for (int a = 0; a < 3; ++a) {
+    low[a] = cell.at[a] - (cell.at[a] > 0 ? 1 : 0);
+    high[a] = std::min(cell.at[a] + 1, std::uint32_t(grid_.counts[a] - 1));
+  }
+  for (std::uint32_t z = low[2]; z <= high[2]; ++z) {
+    for (std::uint32_t y = low[1]; y <= high[1]; ++y) {
+      for (std::uint32_t i = low[0]; i <= high[0]; ++i) {
+        for (const Neighbour& light : lights_of_cell_[node_of(grid_, {0, {i, y, z}})]) add(light);
       }
     }
   }

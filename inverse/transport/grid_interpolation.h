@@ -35,13 +35,12 @@ class GridInterpolation {
     std::size_t light;
     int level;
   };
-  std::vector<Neighbour> lights_of_cell(std::size_t node) const;
   int level_at(std::size_t node, const Eigen::Vector3d& position) const;
   std::size_t nearest_light(const Eigen::Vector3d& position) const;
 
   const renderer::RayTracer& tracer_;
   const LightGrid& grid_;
-  std::vector<std::vector<Neighbour>> finer_of_node_;  // empty for whole cells
+  std::vector<std::vector<Neighbour>> lights_of_cell_;  // by node: its own light, or those of its finer cells
 };
 
 }  // namespace chiaro::inverse

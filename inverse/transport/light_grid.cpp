@@ -7,7 +7,6 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
-#include "renderer/core/sampler.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -135,16 +134,15 @@ std::optional<Box3f> six_numbers(const std::string& text) {
 }  // namespace
 
 GridCell cell_of(const LightGrid& grid, const LightGrid::FinerCell& finer) {
-  const std::uint64_t nx = std::uint64_t(grid.counts[0]) << finer.level, ny = std::uint64_t(grid.counts[1])
-                                                                              << finer.level;
-  return {
-      finer.level,
-      {std::uint32_t(finer.number % nx), std::uint32_t(finer.number / nx % ny), std::uint32_t(finer.number / nx / ny)}};
+  const std::uint64_t nx = std::uint64_t(grid.counts[0]) << finer.level;
+  const std::uint64_t ny = std::uint64_t(grid.counts[1]) << finer.level;
+  const std::uint64_t x = finer.number % nx, y = finer.number / nx % ny, z = finer.number / nx / ny;
+  return {finer.level, {std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)}};
 }
 
 std::uint64_t number_of(const LightGrid& grid, const GridCell& cell) {
-  const std::uint64_t nx = std::uint64_t(grid.counts[0]) << cell.level, ny = std::uint64_t(grid.counts[1])
-                                                                             << cell.level;
+  const std::uint64_t nx = std::uint64_t(grid.counts[0]) << cell.level;
+  const std::uint64_t ny = std::uint64_t(grid.counts[1]) << cell.level;
   return cell.at[0] + nx * (cell.at[1] + ny * cell.at[2]);
 }
 
@@ -155,8 +153,7 @@ Box3f bounds_of(const LightGrid& grid, const GridCell& cell) {
 }
 
 std::size_t node_of(const LightGrid& grid, const GridCell& cell) {
-  const auto at = [&](int a) { return std::size_t(cell.at[std::size_t(a)] >> cell.level); };
-  return at(0) + std::size_t(grid.counts[0]) * (at(1) + std::size_t(grid.counts[1]) * at(2));
+  return number_of(grid, {0, {cell.at[0] >> cell.level, cell.at[1] >> cell.level, cell.at[2] >> cell.level}});
 }
 
 void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells) {
@@ -199,6 +196,11 @@ LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOpti
   return grid;
 }
 
+Vec3f random_position(const Box3f& box, renderer::Sampler& sampler) {
+  const renderer::Vec2f xy = sampler.next_2d();
+  return box.min + box.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
+}
+
 std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, const Box3f& region, std::size_t count,
                                           std::uint64_t seed) {
   const FreeSpace free_space(tracer);
@@ -206,8 +208,7 @@ std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, con
   std::vector<Vec3f> positions;
   for (std::uint32_t i = 0; positions.size() < count && i < kMostTries * count; ++i) {
     renderer::Sampler sampler(seed, 0, i);
-    const renderer::Vec2f xy = sampler.next_2d();
-    const Vec3f position = region.min + region.extent() * Vec3f{xy.x, xy.y, sampler.next_1d()};
+    const Vec3f position = random_position(region, sampler);
     if (free_space.contains(position, clearance)) positions.push_back(position);
   }
   return positions;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/sampler.h"
 #include "renderer/trace/ray_tracer.h"
 
 namespace chiaro::inverse {
@@ -71,6 +72,9 @@ class FreeSpace {
 
 // Nodes inside solids, and those that touch a surface, are left out. Error where none is left ("no light possible").
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options);
+
+// Anywhere in the box, by the sampler's next three numbers.
+Vec3f random_position(const Box3f& box, renderer::Sampler& sampler);
 
 // Evenly distributed over the free space of the region. Fewer where there is hardly any.
 std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, const Box3f& region, std::size_t count,

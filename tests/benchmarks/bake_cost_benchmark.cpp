@@ -32,13 +32,10 @@ double peak_megabytes() {
 }
 
 // At least so many, thinned to so many.
-Receivers receivers_of(const renderer::Scene& scene, std::size_t count) {
-  ReceiverOptions options;
-  Receivers all = make_receivers(scene, options);
-  const renderer::RayTracer tracer(scene);
+Receivers receivers_of(const renderer::RayTracer& tracer, std::size_t count) {
+  Receivers all = make_receivers(tracer.scene(), {});
   for (float edge = tracer.bounds().diagonal() / 50; all.size() < count; edge *= 0.8F) {
-    options.max_edge = edge;
-    all = make_receivers(scene, options);
+    all = make_receivers(tracer.scene(), {.max_edge = edge});
   }
   return select_receivers(all, evenly_spread(all.size(), count));
 }
@@ -56,7 +53,7 @@ int main(int argc, char** argv) {
   const BakeSettings settings{.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"};
   std::puts("receivers   lights   seconds   direct   indirect   ns per entry   peak MB");
   for (const std::size_t count : kReceivers) {
-    const Receivers receivers = receivers_of(loaded.scene, count);
+    const Receivers receivers = receivers_of(tracer, count);
     for (const auto& counts : kGrids) {
       const LightGrid grid = make_light_grid(tracer, {.counts = counts, .region = {}});
       reset_peak();
