@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "inverse/solve/insertion.h"
+#include "inverse/solve/split_lights.h"
+#include "renderer/core/control.h"
 #include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
@@ -17,9 +19,13 @@ constexpr double kKnee = 1.25;         // further lights must lower an error tha
 constexpr double kNearNoise = 5;       // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
-constexpr double kClose = 0.1;         // error from which on interpolated indirect light is not good enough
-constexpr int kExactIterations = 10;
-constexpr int kIdleInsertions = 2;  // insertions in a row that may gain nothing
+constexpr double kClose = 0.3;         // error from which on interpolated indirect light is not good enough
+constexpr double kLeastGain = 0.02;    // of the error, by a light that is there
+constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
+constexpr std::size_t kMostSplits = 3;
+constexpr double kStill = 5e-4;  // of the region's diagonal: indirect light hardly changes
+// Beyond that descents go on from one shadow edge to the next.
+constexpr JointRefinementOptions kSearching{.max_iterations = 15, .function_tolerance = 1e-3};
 
 class Search {
  public:
@@ -48,29 +54,38 @@ class Search {
     return out_of_time_;
   }
 
-  // Refines, drops lights that went out, and keeps the set if it is the best of its size.
-  void consider(const LightEstimates& start) {
-    JointRefinement refined = refine_joint(response_, observations_, start);
-    ++refinements_;
-    if (options_.exact != nullptr && refined.error < kClose) refine_exactly(refined);
-    std::erase_if(refined.lights, [](const LightEstimate& l) { return !(l.intensity > 0).any(); });
-    const std::size_t count = refined.lights.size();
-    if (count == 0) return;
-    if (best_.size() <= count) best_.resize(count + 1);
-    if (!(refined.error < best_[count].error)) return;
-    best_[count] = {std::move(refined.lights), refined.error, {}};
+  // Refines them and keeps the best, if none of its size was better, without the lights that went out.
+  void consider(const std::vector<LightEstimates>& starts) {
+    std::vector<JointRefinement> refined(starts.size());
+    renderer::parallel_for(starts.size(), [&](std::size_t k) {
+      refined[k] = refine_joint(response_, observations_, starts[k], kSearching);
+    });
+    refinements_ += int(starts.size());
+    const auto best = std::min_element(refined.begin(), refined.end(),
+                                       [](const auto& a, const auto& b) { return a.error < b.error; });
+    if (best == refined.end()) return;
+    if (options_.exact != nullptr && best->error < kClose) refine_exactly(*best);
+    keep(std::move(*best));
   }
 
   // Between the lights of a grid indirect light is known less well than targets are.
   void refine_exactly(JointRefinement& refined) {
-    options_.exact->correct(response_, refined.lights);
-    refined = refine_joint(response_, observations_, refined.lights, {.max_iterations = kExactIterations});
+    options_.exact->correct(response_, refined.lights, kStill * double(response_.grid().region.diagonal()));
+    refined = refine_joint(response_, observations_, refined.lights, kSearching);
+  }
+
+  void keep(JointRefinement refined) {
+    std::erase_if(refined.lights, [](const LightEstimate& l) { return !(l.intensity > 0).any(); });
+    const std::size_t count = refined.lights.size();
+    if (count == 0) return;
+    if (best_.size() <= count) best_.resize(count + 1);
+    if (refined.error < best_[count].error) best_[count] = {std::move(refined.lights), refined.error, {}};
   }
 
   void refine_cuts() {
     const int sizes = std::min({tree_.tree.leaf_count, most_lights(), kMostCuts});
     for (int size = 1; size <= sizes && !out_of_time(); ++size) {
-      consider(cut_light_tree(tree_, observations_, {0, size, size}).lights);
+      consider({cut_light_tree(tree_, observations_, {0, size, size}).lights});
     }
   }
 
@@ -99,23 +114,23 @@ class Search {
     std::size_t size = knee();
     if (options_.held_out == nullptr || least_error() > kNearNoise * observations_.noise) return size;
     for (std::size_t larger = size + 1; larger < best_.size(); ++larger) {
-      if (best_[larger].lights.empty()) continue;
+      if (!(best_[larger].error < (1 - kLeastGain) * best_[size].error)) continue;
       if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]))) size = larger;
     }
     return size;
   }
 
-  // By value: the best set of its size may change on the way.
-  void consider_insertions(LightEstimates lights) {
+  void consider_one_more(const LightEstimates& lights) {
+    std::vector<LightEstimates> starts = propose_splits(response_, observations_, lights, kMostSplits);
     for (const LightEstimate& inserted : propose_insertions(response_, observations_, lights)) {
-      lights.push_back(inserted);
-      consider(lights);
-      lights.pop_back();
+      starts.push_back(lights);
+      starts.back().push_back(inserted);
     }
+    consider(starts);
   }
 
   void insert_lights() {
-    if (best_.size() < 2) consider_insertions({});
+    if (best_.size() < 2) consider_one_more({});
     int idle = 0;
     for (std::size_t size = best_size(); idle < kIdleInsertions && int(size) < most_lights() && !out_of_time();
          ++size) {
@@ -123,7 +138,7 @@ class Search {
       const std::size_t before = best_size();
       const double error = best_[before].error;
       if (error <= observations_.noise * kNoiseMargin && options_.exact_lights == 0) break;
-      consider_insertions(best_[size].lights);
+      consider_one_more(best_[size].lights);
       const bool gained = best_size() > before || (best_.size() > size + 1 && best_[size + 1].error * kKnee < error);
       idle = gained ? 0 : idle + 1;
     }
@@ -140,7 +155,7 @@ class Search {
         Candidate c = refitted_without(all, columns, without);
         if (c.error < least.error) least = std::move(c);
       }
-      consider(least.lights);
+      consider({least.lights});
     }
   }
 

@@ -16,6 +16,7 @@ constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiv
 // Makes this the light's indirect illumination of the receivers, where it stands now.
 void set_correction(const LightResponse& response, LightEstimate& light, const std::vector<Vec3f>& indirect) {
   light.correction = -response.interpolated_indirect(light.position);
+  light.corrected_at = light.position;
   for (std::size_t i = 0; i < indirect.size(); ++i) {
     light.correction.row(Eigen::Index(i)) += to_eigen(indirect[i]).transpose();
   }
@@ -36,9 +37,17 @@ ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vecto
       settings_(settings),
       gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
 
-void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
-  const auto exact = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));
-  for (std::size_t j = 0; j < lights.size(); ++j) set_correction(response, lights[j], exact[j]);
+void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights, double near) const {
+  std::vector<std::size_t> moved;
+  std::vector<Vec3f> positions;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    const bool corrected = lights[j].correction.size() > 0;
+    if (corrected && near > 0 && (lights[j].position - lights[j].corrected_at).norm() <= near) continue;
+    moved.push_back(j);
+    positions.push_back(to_vec3f(lights[j].position));
+  }
+  const auto exact = indirect_illumination_by_light(tracer_, gather_, positions);
+  for (std::size_t k = 0; k < moved.size(); ++k) set_correction(response, lights[moved[k]], exact[k]);
 }
 
 void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimates& lights) const {

@@ -1,12 +1,14 @@
 #include "inverse/solve/insertion.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
+constexpr std::size_t kMostInsertions = 3;
 constexpr std::size_t kDarkest = 16;  // receivers in front of which a light is tried …
 constexpr float kFarthest = 0.05F;    // … from this part of the region's diagonal …
 constexpr float kNearest = 0.0005F;   // … down to this one …
@@ -16,6 +18,11 @@ constexpr Vec3f kDirections[] = {{0, 0, 1},           {.5F, 0, .87F},    {-.25F,
                                  {.87F, 0, .5F},      {.43F, .75F, .5F}, {-.43F, .75F, .5F},  {-.87F, 0, .5F},
                                  {-.43F, -.75F, .5F}, {.43F, -.75F, .5F}};
 
+struct Insertion {
+  double gain;
+  LightEstimate light;
+};
+
 // The candidate so far that explains most, or none.
 class BestInsertion {
  public:
@@ -23,14 +30,15 @@ class BestInsertion {
 
   void consider(LightEstimate place, const Column& column) {
     const double gain = fit_intensity(residual_, column, place);
-    if (gain > gain_) gain_ = gain, best_ = {std::move(place)};
+    if (gain > (best_ ? best_->gain : 0)) best_ = {gain, std::move(place)};
   }
-  void append_to(LightEstimates& lights) const { lights.insert(lights.end(), best_.begin(), best_.end()); }
+  void append_to(std::vector<Insertion>& insertions) const {
+    if (best_) insertions.push_back(*best_);
+  }
 
  private:
   const Observations& residual_;
-  double gain_ = 0;
-  LightEstimates best_;
+  std::optional<Insertion> best_;
 };
 
 std::vector<std::size_t> darkest_receivers(const Observations& residual) {
@@ -86,21 +94,25 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
                                   const LightEstimates& lights) {
   const Observations residual = less(observations, response, lights);
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
-  LightEstimates proposals;
+  std::vector<Insertion> insertions;
   for (float t = kFarthest; t > kNearest; t /= kStep) {
     const LightEstimates places =
         direct_lights(response, places_in_front(response, darkest, t * response.grid().region.diagonal()));
     const std::vector<Column> columns = evaluate_columns(response, places, Evaluation::kTracedVisibility);
     BestInsertion in_front(residual);
     for (std::size_t j = 0; j < places.size(); ++j) in_front.consider(places[j], columns[j]);
-    in_front.append_to(proposals);
+    in_front.append_to(insertions);
   }
   BestInsertion on_grid(residual);
   const std::vector<Vec3f>& grid = response.grid().positions;
   for (std::size_t j = 0; j < grid.size(); ++j) {
     on_grid.consider({to_eigen(grid[j]), Eigen::Array3d::Ones()}, response.grid_column(j));
   }
-  on_grid.append_to(proposals);
+  on_grid.append_to(insertions);
+  std::stable_sort(insertions.begin(), insertions.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+  LightEstimates proposals;
+  for (std::size_t k = 0; k < std::min(insertions.size(), kMostInsertions); ++k)
+    proposals.push_back(insertions[k].light);
   return proposals;
 }
 

@@ -4,10 +4,10 @@
 
 namespace chiaro::inverse {
 
-// Places for one more light, each with the intensity that explains most of what `lights` leave: the best of the grid's,
-// and the best at every distance in front of the receivers that lack most. A light right beside a surface, or inside a
-// fixture, is seen by hardly anything else. Source: the linear minimisation step of Boyd, Schiebinger, Recht, The
-// alternating descent conditional gradient method for sparse inverse problems, 2017.
+// Places for one more light, each with the intensity that explains most of what `lights` leave, the best few of: the
+// best of the grid's, and the best at every distance in front of the receivers that lack most. A light right beside a
+// surface, or inside a fixture, is seen by hardly anything else. Source: the linear minimisation step of Boyd,
+// Schiebinger, Recht, The alternating descent conditional gradient method for sparse inverse problems, 2017.
 LightEstimates propose_insertions(const LightResponse& response, const Observations& observations,
                                   const LightEstimates& lights);
 

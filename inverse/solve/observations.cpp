@@ -12,6 +12,8 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kOrdinary = 0.97;  // of all receivers are as bright as lights at a distance make them
+constexpr double kShadows = 0.01;   // relative error of transport at least: shadows' edges
+constexpr double kDark = 0.1;       // in mean brightness: darker receivers count as being as bright
 
 // The brightness that this part of all receivers do not exceed.
 double quantile(const Eigen::VectorXd& brightness, const Eigen::VectorXd& stands_for, double part) {
@@ -56,6 +58,15 @@ Observations with_capped_weights(const Observations& observations) {
   }
   capped.measure_target();
   return capped;
+}
+
+Observations weighted_by_noise(const Observations& observations, double transport_error) {
+  const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
+  const Eigen::ArrayXd by_transport = std::max(kShadows, transport_error) * brightness.max(kDark * brightness.mean());
+  Observations weighted = observations;
+  weighted.sqrt_weight.array() /= (3 * observations.standard_error.array().square() + by_transport.square()).sqrt();
+  weighted.measure_target();
+  return weighted;
 }
 
 Observations standing_for_all(const Observations& observations) {

@@ -25,14 +25,18 @@ struct Observations {
 // to their brightness.
 Observations with_capped_weights(const Observations& observations);
 
+// The same with weights by how well each receiver is known: its standard error, and the relative error of transport.
+Observations weighted_by_noise(const Observations& observations, double transport_error);
+
 // The same with weights by which the important vertices stand for all receivers.
 Observations standing_for_all(const Observations& observations);
 
 // A light being sought.
 struct LightEstimate {
-  Eigen::Vector3d position;  // metres
-  Eigen::Array3d intensity;  // candela per channel, ≥ 0
-  Column correction{};       // added to its unity response wherever it moves; empty: none
+  Eigen::Vector3d position;        // metres
+  Eigen::Array3d intensity;        // candela per channel, ≥ 0
+  Column correction{};             // added to its unity response wherever it moves; empty: none
+  Eigen::Vector3d corrected_at{};  // where the correction was made
 };
 using LightEstimates = std::vector<LightEstimate>;
 

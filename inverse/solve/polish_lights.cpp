@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kRounds = 4;
 constexpr double kAtRest = 2e-4;  // of the region's diagonal
+constexpr JointRefinementOptions kDescent{.max_iterations = 15, .function_tolerance = 1e-4};
 constexpr double kSettle = 3e-3;  // first steps across shadow edges, of the region's diagonal
 
 }  // namespace
@@ -27,13 +28,14 @@ PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& re
   double move = std::numeric_limits<double>::infinity();
   while (move > kAtRest * diagonal && polished.rounds < kRounds) {
     exact.correct(response, polished.lights);
-    const JointRefinement refined = refine_joint(response, observations, polished.lights);
-    SettledLights settled = settle_positions(response, observations, refined.lights, kSettle * diagonal);
-    move = largest_move(settled.lights, polished.lights);
-    polished.lights = std::move(settled.lights);
-    polished.error = settled.error;
+    JointRefinement refined = refine_joint(response, observations, polished.lights, kDescent);
+    move = largest_move(refined.lights, polished.lights);
+    polished.lights = std::move(refined.lights);
     ++polished.rounds;
   }
+  SettledLights settled = settle_positions(response, observations, polished.lights, kSettle * diagonal);
+  polished.lights = std::move(settled.lights);
+  polished.error = settled.error;
   return polished;
 }
 

@@ -15,8 +15,8 @@ struct PolishedLights {
 double largest_move(const LightEstimates& a, const LightEstimates& b);
 
 // The last descent over the important vertices, without interpolation: indirect light is gathered at the lights' very
-// positions, and its difference from the interpolated one is carried along as a constant while the lights are refined
-// and settle across shadow edges; again until they rest.
+// positions, and its difference from the interpolated one is carried along as a constant while the lights are refined;
+// again until they rest. Then they settle across shadow edges.
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start);
 

@@ -1,73 +1,87 @@
 // Joint descent over all lights: Denoyelle, Duval, Peyré, Soubies, The sliding Frank–Wolfe algorithm, 2019, step 5;
-// Levenberg–Marquardt by Ceres.
+// Levenberg–Marquardt by Ceres over the positions alone. Intensities are the best ones wherever the lights stand
+// (variable projection): Golub, Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems
+// whose variables separate, 1973, with the Jacobian of Kaufman, A variable projection method for solving separable
+// nonlinear least squares problems, 1975.
 
 #include "inverse/solve/refine_joint.h"
 
 #include <ceres/ceres.h>
+#include <Eigen/QR>
 
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kLightParameters = 6;  // x, y, z (metres), red, green, blue (candela)
-
-// Residuals of all receivers and channels; one parameter block per light.
+// Residuals of all receivers and channels, row 'channel · receivers + receiver'; one parameter block, x, y, z (metres),
+// per light.
 class IlluminationResiduals final : public ceres::CostFunction {
  public:
   IlluminationResiduals(const LightResponse& response, const Observations& observations, const LightEstimates& start)
-      : response_(response), observations_(observations), start_(start), light_count_(start.size()) {
+      : response_(response), observations_(observations), start_(start) {
     set_num_residuals(int(3 * observations.wanted.rows()));
-    for (std::size_t j = 0; j < light_count_; ++j) mutable_parameter_block_sizes()->push_back(kLightParameters);
+    for (std::size_t j = 0; j < start.size(); ++j) mutable_parameter_block_sizes()->push_back(3);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Index m = observations_.wanted.rows();
-    std::vector<ColumnWithGradient> columns(light_count_);
-    renderer::parallel_for(light_count_, [&](std::size_t j) {
+    const std::vector<ColumnWithGradient> columns = columns_at(parameters, jacobians != nullptr);
+    std::vector<Column> values;
+    for (const ColumnWithGradient& column : columns) values.push_back(column.value);
+    const IntensityFit fit = fit_intensities(observations_, values);
+    Eigen::Map<Column> out(residuals, observations_.wanted.rows(), 3);
+    out = -observations_.wanted;
+    for (std::size_t j = 0; j < values.size(); ++j) out += values[j] * fit.intensity[j].matrix().asDiagonal();
+    out = observations_.sqrt_weight.asDiagonal() * out;
+    for (int c = 0; jacobians != nullptr && c < 3; ++c) fill_jacobian(columns, fit, c, jacobians);
+    return true;
+  }
+
+ private:
+  std::vector<ColumnWithGradient> columns_at(double const* const* parameters, bool with_gradient) const {
+    std::vector<ColumnWithGradient> columns(start_.size());
+    renderer::parallel_for(columns.size(), [&](std::size_t j) {
       const Eigen::Vector3d position(parameters[j]);
-      if (jacobians != nullptr) {
+      if (with_gradient) {
         columns[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
       } else {
         columns[j].value = response_.evaluate(position, Evaluation::kTracedVisibility);
       }
       if (start_[j].correction.size() > 0) columns[j].value += start_[j].correction;
     });
-    Eigen::Map<Column> out(residuals, m, 3);
-    out = -observations_.wanted;
-    for (std::size_t j = 0; j < light_count_; ++j) {
-      out += columns[j].value * Eigen::Map<const Eigen::Vector3d>(parameters[j] + 3).asDiagonal();
-    }
-    out = observations_.sqrt_weight.asDiagonal() * out;
-    for (std::size_t j = 0; jacobians != nullptr && j < light_count_; ++j) {
-      if (jacobians[j] != nullptr) fill_jacobian(columns[j], parameters[j] + 3, jacobians[j]);
-    }
-    return true;
+    return columns;
   }
 
- private:
-  // Row 'channel · m + receiver'; row-major, as Ceres has it.
-  void fill_jacobian(const ColumnWithGradient& column, const double* intensity, double* jacobian) const {
-    const Eigen::Index m = observations_.wanted.rows();
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kLightParameters, Eigen::RowMajor>> out(jacobian, 3 * m,
-                                                                                             kLightParameters);
-    out.setZero();
-    for (int c = 0; c < 3; ++c) {
-      auto rows = out.middleRows(c * m, m);
+  // What a move changes, less what intensities of the lights that shine make good.
+  void fill_jacobian(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit, int channel,
+                     double** jacobians) const {
+    const Eigen::Index receivers = observations_.wanted.rows(), lights = Eigen::Index(columns.size());
+    Eigen::MatrixXd moved(receivers, 3 * lights), lit(receivers, lights);
+    Eigen::Index lit_count = 0;
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      const ColumnWithGradient& column = columns[std::size_t(j)];
+      const double intensity = fit.intensity[std::size_t(j)][channel];
       for (int a = 0; a < 3; ++a) {
-        rows.col(a) = intensity[c] * observations_.sqrt_weight.cwiseProduct(column.gradient[a].col(c));
+        moved.col(3 * j + a) = intensity * observations_.sqrt_weight.cwiseProduct(column.gradient[a].col(channel));
       }
-      rows.col(3 + c) = observations_.sqrt_weight.cwiseProduct(column.value.col(c));
+      if (intensity > 0) {
+        lit.col(lit_count++) = observations_.sqrt_weight.cwiseProduct(column.value.col(channel));
+      }
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(lit.leftCols(lit_count));
+    const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(receivers, qr.rank());
+    moved -= basis * (basis.transpose() * moved).eval();
+    using Block = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      if (jacobians[j] == nullptr) continue;
+      Eigen::Map<Block>(jacobians[j] + channel * receivers * 3, receivers, 3) = moved.middleCols<3>(3 * j);
     }
   }
 
   const LightResponse& response_;
   const Observations& observations_;
   const LightEstimates& start_;  // for the corrections
-  std::size_t light_count_;
 };
-
-using Parameters = std::array<double, kLightParameters>;
 
 void set_bounds(ceres::Problem& problem, double* block, const Box3f& region) {
   for (int a = 0; a < 3; ++a) {
@@ -76,7 +90,6 @@ void set_bounds(ceres::Problem& problem, double* block, const Box3f& region) {
     // A region that is flat along an axis fixes that coordinate; Ceres wants room between bounds.
     problem.SetParameterLowerBound(block, a, low);
     problem.SetParameterUpperBound(block, a, std::max(high, low + 1e-9));
-    problem.SetParameterLowerBound(block, 3 + a, 0);
   }
 }
 
@@ -89,6 +102,8 @@ ceres::Solver::Options solver_options(const JointRefinementOptions& options) {
   o.parameter_tolerance = 1e-7;
   // Shadow edges make the cost rough: a rise along the way to a deeper valley is allowed.
   o.use_nonmonotonic_steps = true;
+  // Steps that end at the region's border are cut off there: searching along them takes more than half of the time.
+  o.max_num_line_search_step_size_iterations = 0;
   o.logging_type = ceres::SILENT;
   o.num_threads = 1;
   return o;
@@ -104,22 +119,17 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
     result.termination = "no lights";
     return result;
   }
-  std::vector<Parameters> parameters(start.size());
-  std::vector<double*> blocks;
-  for (std::size_t j = 0; j < start.size(); ++j) {
-    Eigen::Map<Eigen::Vector3d>(parameters[j].data()) = start[j].position;
-    Eigen::Map<Eigen::Array3d>(parameters[j].data() + 3) = start[j].intensity;
-    blocks.push_back(parameters[j].data());
-  }
+  result.lights = start;
   ceres::Problem problem;
+  std::vector<double*> blocks;
+  for (LightEstimate& light : result.lights) blocks.push_back(light.position.data());
   problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, blocks);
   for (double* block : blocks) set_bounds(problem, block, response.grid().region);
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  for (std::size_t j = 0; j < start.size(); ++j) {
-    const Parameters& p = parameters[j];
-    result.lights.push_back({Eigen::Vector3d(p.data()), Eigen::Array3d(p[3], p[4], p[5]), start[j].correction});
-  }
+  const IntensityFit fit =
+      fit_intensities(observations, evaluate_columns(response, result.lights, Evaluation::kTracedVisibility));
+  for (std::size_t j = 0; j < start.size(); ++j) result.lights[j].intensity = fit.intensity[j];
   result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
   result.iterations = int(summary.iterations.size());
   result.termination = ceres::TerminationTypeToString(summary.termination_type);

@@ -18,8 +18,8 @@ struct JointRefinementOptions {
   double function_tolerance = 1e-6;
 };
 
-// Levenberg–Marquardt over all positions and intensities at once, with analytic Jacobians at fixed visibility;
-// positions inside the grid's region, intensities ≥ 0. Never worse than `start`.
+// Levenberg–Marquardt over all positions at once, with analytic Jacobians at fixed visibility and the best intensities
+// ≥ 0 wherever the lights stand; positions inside the grid's region. Never worse than `start`.
 JointRefinement refine_joint(const LightResponse& response, const Observations& observations,
                              const LightEstimates& start, const JointRefinementOptions& options = {});
 

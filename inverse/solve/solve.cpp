@@ -30,6 +30,7 @@ constexpr std::size_t kHeldOut = 1500;   // receivers that tell how many lights 
 constexpr int kFixedSamples = 512;       // per important vertex
 constexpr int kFixedSamplesOfMany = 32;  // per receiver of the last refinement …
 constexpr std::size_t kMany = 50000;     // … of so many at most
+constexpr double kExplained = 1.5;       // times the noise of the target, or less: more receivers hardly tell more
 constexpr double kNegligible = 1e-3;     // contribution to the target's norm
 constexpr double kOnSurface = 0.5;       // of a target's receivers must lie on the scene
 
@@ -211,8 +212,10 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
   const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  const LightEstimates all = count.out_of_time ? joined(beside_surfaces, polished.lights)
-                                               : refined_over_many(search, polished.lights, beside_surfaces, clock);
+  const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
+  const LightEstimates all = count.out_of_time || explained
+                                 ? joined(beside_surfaces, polished.lights)
+                                 : refined_over_many(search, polished.lights, beside_surfaces, clock);
   return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
@@ -276,7 +279,8 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
     exact.emplace(problem.tracer, samples, transport.cache.settings);
     clock.finish("exact_indirect", {});
     beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
-    searched = with_capped_weights(published);
+    searched = published.noise > 0 ? weighted_by_noise(published, transport.cache.indirect_relative_error)
+                                   : with_capped_weights(published);
     result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
     if (beside_surfaces.empty()) {
       held_out = hold_out(problem, transport.cache.settings, options, control);

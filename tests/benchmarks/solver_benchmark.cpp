@@ -13,6 +13,7 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "inverse/solve/solve.h"
@@ -32,9 +33,10 @@ constexpr float kApart = 0.05F, kFromSurfaces = 0.03F;  // of the diagonal
 constexpr double kLeastShare = 0.02;                    // of all illumination
 constexpr float kIntensityRatio = 8;
 constexpr int kPilotSamples = 16;
+constexpr std::size_t kJudged = 4000;  // receivers
 
 struct Options {
-  std::string scene, method = "joint";
+  std::string scene, method = "joint", targets;
   std::uint64_t seed = 1;
   std::size_t sets = 20;
   std::vector<std::size_t> lights{1, 3, 5, 6, 7, 9, 11, 16};
@@ -55,7 +57,8 @@ Options parse(int argc, char** argv) {
   app.add_option("--method", options.method)->check(CLI::IsMember({"joint", "thesis"}));
   app.add_option("--important-vertices", options.important_vertices);
   app.add_option("--max-edge", options.max_edge, "Of the receivers, metres");
-  app.add_flag("--verbose", options.verbose, "A line for each set");
+  app.add_option("--targets", options.targets, "Folder that keeps the targets for later runs with the same options");
+  app.add_flag("--verbose", options.verbose, "What each set came to");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Error& error) {
@@ -64,10 +67,52 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
+// Illumination without the noise of paths.
+class ExactIllumination {
+ public:
+  ExactIllumination(const RayTracer& tracer, const Receivers& receivers)
+      : tracer_(tracer),
+        samples_(select_receivers(receivers, evenly_spread(receivers.size(), kJudged)).samples),
+        gather_(make_gather_operator(tracer, samples_, {})) {}
+
+  // ‖illumination by the lights found − by the true ones‖ / ‖the latter‖
+  double error(const std::vector<PointLight>& truth, const std::vector<FoundLight>& found) const {
+    std::vector<PointLight> lights;
+    for (const FoundLight& light : found) lights.push_back(light.light);
+    const std::vector<Vec3f> wanted = illumination(truth), got = illumination(lights);
+    double difference = 0, norm = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      difference += double(length_squared(got[i] - wanted[i]));
+      norm += double(length_squared(wanted[i]));
+    }
+    return std::sqrt(difference / norm);
+  }
+
+ private:
+  std::vector<Vec3f> illumination(const std::vector<PointLight>& lights) const {
+    std::vector<Vec3f> sum(samples_.size()), positions;
+    for (const PointLight& light : lights) positions.push_back(light.position);
+    const auto indirect = indirect_illumination_by_light(tracer_, gather_, positions);
+    for (std::size_t j = 0; j < lights.size(); ++j) {
+      for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const bool lit = sees(tracer_, samples_[i], positions[j], std::uint32_t(i));
+        const float direct = lit ? unoccluded_illumination(samples_[i], positions[j]) : 0;
+        sum[i] += lights[j].intensity * (Vec3f{direct, direct, direct} + indirect[j][i]);
+      }
+    }
+    return sum;
+  }
+
+  const RayTracer& tracer_;
+  std::vector<renderer::SurfaceSample> samples_;
+  GatherOperator gather_;
+};
+
 struct Stage {
   const RayTracer& tracer;
   const Receivers& receivers;
   Receivers some;  // of them
+  ExactIllumination exact;
   float diagonal;
 };
 
@@ -126,6 +171,20 @@ Target traced_target(const Stage& stage, const std::vector<PointLight>& lights, 
           standard_error_per_receiver(traced)};
 }
 
+// Traced unless an earlier run did it.
+Target kept_target(const Stage& stage, const std::vector<PointLight>& lights, const Options& options,
+                   std::uint64_t seed) {
+  if (options.targets.empty()) return traced_target(stage, lights, options.noise, seed);
+  const auto file = std::filesystem::path(options.targets) /
+                    fmt::format("{}_{}_{}_{}.glb", std::filesystem::path(options.scene).stem().string(),
+                                options.max_edge, options.noise, seed);
+  if (!std::filesystem::exists(file)) {
+    std::filesystem::create_directories(options.targets);
+    save_target(traced_target(stage, lights, options.noise, seed), file);
+  }
+  return load_target(file);
+}
+
 // Of lights found, nearest pairs first; relative to the diagonal and to the true intensity.
 struct Distances {
   std::vector<double> position, intensity;
@@ -166,18 +225,33 @@ struct Row {
   std::vector<double> beyond, position, intensity, seconds, total;
 };
 
-void add_case(Row& row, const std::vector<PointLight>& truth, const SolveResult& result, float diagonal) {
+void add_case(Row& row, const Stage& stage, const std::vector<PointLight>& truth, const SolveResult& result) {
   const long off = long(result.lights.size()) - long(truth.size());
   ++row.cases;
   row.exact += off == 0 ? 1 : 0;
   row.off_by_more += std::abs(off) > 1 ? 1 : 0;
-  const double noise = std::hypot(result.target_noise, result.verification_noise);
-  row.beyond.push_back(std::sqrt(std::max(0.0, result.relative_l2 * result.relative_l2 - noise * noise)));
-  const Distances distances = match(truth, result.lights, diagonal);
+  row.beyond.push_back(stage.exact.error(truth, result.lights));
+  const Distances distances = match(truth, result.lights, stage.diagonal);
   row.position.insert(row.position.end(), distances.position.begin(), distances.position.end());
   row.intensity.insert(row.intensity.end(), distances.intensity.begin(), distances.intensity.end());
   row.seconds.push_back(result.initial_seconds + result.optimal_seconds);
   row.total.push_back(result.total_seconds - result.cache_seconds);
+}
+
+void print_case(std::size_t set, const Stage& stage, const std::vector<PointLight>& truth, const SolveResult& result,
+                double beyond) {
+  std::printf("  set %zu: %zu found, %.2f %% beyond noise\n", set, result.lights.size(), 100 * beyond);
+  const Distances distances = match(truth, result.lights, stage.diagonal);
+  for (std::size_t k = 0; k < distances.position.size(); ++k) {
+    std::printf("    light %zu: %.3f %% off, intensity %.2f %%\n", k + 1, 100 * distances.position[k],
+                100 * distances.intensity[k]);
+  }
+  for (const StageReport& report : result.stages) {
+    std::printf("    %-22s %6.2f s", report.name.c_str(), report.seconds);
+    for (const auto& [name, value] : report.figures) std::printf("  %s %.4g", name.c_str(), value);
+    std::puts("");
+  }
+  std::fflush(stdout);
 }
 
 void print_row(std::size_t lights, const Row& row) {
@@ -196,7 +270,7 @@ int main(int argc, char** argv) {
   const RayTracer tracer(loaded.scene);
   const Receivers receivers = make_receivers(loaded.scene, {.max_edge = options.max_edge});
   const Stage stage{tracer, receivers, select_receivers(receivers, evenly_spread(receivers.size(), 1000)),
-                    tracer.bounds().diagonal()};
+                    ExactIllumination(tracer, receivers), tracer.bounds().diagonal()};
   const BakeSettings settings{.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"};
   const LightGrid grid = make_light_grid(tracer, {});
   const auto cache = std::filesystem::temp_directory_path() / ("solver_benchmark_" + std::to_string(getpid()) + ".exr");
@@ -211,24 +285,14 @@ int main(int argc, char** argv) {
     for (std::size_t set = 0; set < options.sets; ++set) {
       const std::uint64_t seed = (options.seed * 100 + count) * 1000 + set;
       const std::vector<PointLight> truth = random_lights(stage, grid.region, count, seed);
-      const Target target = traced_target(stage, truth, options.noise, seed);
+      const Target target = kept_target(stage, truth, options, seed);
       SolveOptions solve_options;
       solve_options.method = options.method == "thesis" ? SolveMethod::kThesis : SolveMethod::kJoint;
       solve_options.verification_samples = 32;
       solve_options.important_vertices = options.important_vertices;
       const SolveResult result = solve({tracer, target, cache, {}, settings, {}}, solve_options);
-      add_case(row, truth, result, stage.diagonal);
-      if (options.verbose) {
-        std::printf("  set %zu: %zu found, relative L2 %.4f (noise %.4f and %.4f), farthest %.4f %%, %.2f s\n", set,
-                    result.lights.size(), result.relative_l2, result.target_noise, result.verification_noise,
-                    100 * quantile(match(truth, result.lights, stage.diagonal).position, 1), row.seconds.back());
-        for (const StageReport& report : result.stages) {
-          std::printf("    %-22s %6.2f s", report.name.c_str(), report.seconds);
-          for (const auto& [name, value] : report.figures) std::printf("  %s %.4g", name.c_str(), value);
-          std::puts("");
-        }
-        std::fflush(stdout);
-      }
+      add_case(row, stage, truth, result);
+      if (options.verbose) print_case(set, stage, truth, result, row.beyond.back());
     }
     print_row(count, row);
   }

@@ -1,0 +1,86 @@
+#include "inverse/solve/split_lights.h"
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/control.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr double kDifference = 0.005;  // of the region's diagonal, for second derivatives
+constexpr double kHalfWidth = 0.02;    // of the region's diagonal, from a light to either of its halves
+
+// Σ residual · ∂²φ / ∂x∂x, by differences of gradients.
+Eigen::Matrix3d curvature(const LightResponse& response, const Column& weighted_residual, const LightEstimate& light,
+                          double step) {
+  const Column pull = weighted_residual * light.intensity.matrix().asDiagonal();
+  Eigen::Matrix3d second;
+  for (int a = 0; a < 3; ++a) {
+    const Eigen::Vector3d offset = step * Eigen::Vector3d::Unit(a);
+    const auto after =
+        response.evaluate_with_gradient(Eigen::Vector3d(light.position + offset), Evaluation::kTracedVisibility);
+    const auto before =
+        response.evaluate_with_gradient(Eigen::Vector3d(light.position - offset), Evaluation::kTracedVisibility);
+    for (int b = 0; b < 3; ++b) {
+      second(a, b) = (after.gradient[b] - before.gradient[b]).cwiseProduct(pull).sum() / (2 * step);
+    }
+  }
+  return (second + second.transpose()) / 2;
+}
+
+struct Split {
+  LightEstimates lights;
+  double error = 0;
+};
+
+// Its halves take the light's correction with them.
+Split split_light(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
+                  std::vector<Column> columns, const Column& weighted_residual, std::size_t split) {
+  const Box3f& region = response.grid().region;
+  const double diagonal = double(region.diagonal());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+      curvature(response, weighted_residual, lights[split], kDifference * diagonal));
+  Split result{lights};
+  LightEstimate half = lights[split];
+  for (const double side : {-1.0, 1.0}) {
+    half.position = (lights[split].position + side * kHalfWidth * diagonal * eigen.eigenvectors().col(0))
+                        .cwiseMax(to_eigen(region.min))
+                        .cwiseMin(to_eigen(region.max));
+    Column column = response.evaluate(half.position, Evaluation::kTracedVisibility);
+    if (half.correction.size() > 0) column += half.correction;
+    if (side < 0) {
+      result.lights[split] = half;
+      columns[split] = std::move(column);
+    } else {
+      result.lights.push_back(half);
+      columns.push_back(std::move(column));
+    }
+  }
+  const IntensityFit fit = fit_intensities(observations, columns);
+  for (std::size_t j = 0; j < result.lights.size(); ++j) result.lights[j].intensity = fit.intensity[j];
+  result.error = relative_error(observations, total_illumination(columns, result.lights, observations.wanted.rows()));
+  return result;
+}
+
+}  // namespace
+
+std::vector<LightEstimates> propose_splits(const LightResponse& response, const Observations& observations,
+                                           const LightEstimates& lights, std::size_t most) {
+  const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
+  const Column residual = total_illumination(columns, lights, observations.wanted.rows()) - observations.wanted;
+  const Column weighted = observations.sqrt_weight.cwiseAbs2().asDiagonal() * residual;
+  std::vector<Split> splits(lights.size());
+  renderer::parallel_for(lights.size(), [&](std::size_t j) {
+    splits[j] = split_light(response, observations, lights, columns, weighted, j);
+  });
+  std::stable_sort(splits.begin(), splits.end(), [](const Split& a, const Split& b) { return a.error < b.error; });
+  splits.resize(std::min(splits.size(), most));
+  std::vector<LightEstimates> sets;
+  for (Split& split : splits) sets.push_back(std::move(split.lights));
+  return sets;
+}
+
+}  // namespace chiaro::inverse
