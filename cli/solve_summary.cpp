@@ -12,7 +12,17 @@ JsonObject light_summary(const inverse::FoundLight& found) {
   summary.emplace_back("position", found.light.position);
   summary.emplace_back("intensity", found.light.intensity);
   summary.emplace_back("contribution", found.contribution);
+  summary.emplace_back("interval_90",
+                       JsonObject{{"position", found.position_interval}, {"intensity", found.intensity_interval}});
   return summary;
+}
+
+JsonObject curve_point(const inverse::LightSet& set) {
+  JsonList lights;
+  for (const renderer::PointLight& light : set.lights) {
+    lights.emplace_back(JsonObject{{"type", "point"}, {"position", light.position}, {"intensity", light.intensity}});
+  }
+  return {{"light_count", set.lights.size()}, {"relative_l2", set.relative_l2}, {"lights", lights}};
 }
 
 JsonObject stage_summary(const inverse::StageReport& stage) {
@@ -21,11 +31,24 @@ JsonObject stage_summary(const inverse::StageReport& stage) {
   return summary;
 }
 
+// "1: 54.5 %, 2: 40.1 %"
+std::string text_of_curve(const std::vector<inverse::LightSet>& curve) {
+  std::vector<std::string> points;
+  for (const inverse::LightSet& set : curve) {
+    points.push_back(fmt::format("{}: {}", set.lights.size(), text_of_percent(set.relative_l2)));
+  }
+  return fmt::format("{}", fmt::join(points, ", "));
+}
+
+// The widest of three half widths.
+std::string text_of_interval(renderer::Vec3f half) { return fmt::format("{:.2g}", max_component(half)); }
+
 std::string light_table(const std::vector<inverse::FoundLight>& lights) {
-  std::vector<std::vector<std::string>> rows{{"light", "position (m)", "intensity (cd)", "contribution"}};
+  std::vector<std::vector<std::string>> rows{{"light", "position (m)", "± 90 %", "intensity (cd)", "± 90 %", "contribution"}};
   for (const inverse::FoundLight& found : lights) {
     rows.push_back({fmt::format("{}", rows.size()), text_of_vector(found.light.position),
-                    text_of_vector(found.light.intensity), text_of_percent(found.contribution)});
+                    text_of_interval(found.position_interval), text_of_vector(found.light.intensity),
+                    text_of_interval(found.intensity_interval), text_of_percent(found.contribution)});
   }
   return table(rows);
 }
@@ -33,14 +56,16 @@ std::string light_table(const std::vector<inverse::FoundLight>& lights) {
 }  // namespace
 
 JsonObject solve_summary(const inverse::SolveResult& result) {
-  JsonList lights, stages;
+  JsonList lights, curve, stages;
   for (const inverse::FoundLight& found : result.lights) lights.emplace_back(light_summary(found));
+  for (const inverse::LightSet& set : result.error_curve) curve.emplace_back(curve_point(set));
   for (const inverse::StageReport& stage : result.stages) stages.emplace_back(stage_summary(stage));
   return {{"light_count", result.lights.size()},
           {"lights", lights},
           {"error", JsonObject{{"relative_l2", result.relative_l2},
                                {"relative_l2_cached", result.relative_l2_cached},
                                {"initial_relative_l2", result.initial_relative_l2}}},
+          {"error_curve", curve},
           {"seconds", JsonObject{{"total", result.total_seconds},
                                  {"initial", result.initial_seconds},
                                  {"optimal", result.optimal_seconds},
@@ -57,6 +82,7 @@ std::string solve_text(const inverse::SolveResult& result) {
                             {"before the last optimisation", text_of_percent(result.initial_relative_l2)}};
   rows.emplace_back("noise of the fresh trace", text_of_percent(result.verification_noise));
   if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
+  if (!result.error_curve.empty()) rows.emplace_back("by number of lights", text_of_curve(result.error_curve));
   rows.emplace_back("ended", result.termination);
   for (const inverse::StageReport& stage : result.stages) rows.emplace_back(stage.name, text_of_seconds(stage.seconds));
   rows.emplace_back("total", text_of_seconds(result.total_seconds));

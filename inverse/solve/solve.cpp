@@ -8,6 +8,7 @@
 
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/important_vertices.h"
+#include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/optimize_simplex.h"
@@ -16,6 +17,7 @@
 #include "inverse/solve/refine_over_many.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/stage_clock.h"
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::inverse {
@@ -96,9 +98,11 @@ std::vector<FoundLight> found_lights(const LightResponse& response, const Observ
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
   std::vector<std::size_t> order = all_indices(lights.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
+  const std::vector<LightInterval> intervals = light_intervals(response, observations, lights);
   std::vector<FoundLight> found;
   for (const std::size_t j : order) {
-    found.push_back({point_light(lights[j]), norm[j] / total});
+    found.push_back({point_light(lights[j]), norm[j] / total, to_vec3f(intervals[j].position),
+                     to_vec3f(intervals[j].intensity.matrix())});
     found.back().light.name = fmt::format("light{}", found.size());
   }
   return found;
@@ -108,11 +112,25 @@ struct Optimum {
   LightEstimates lights;
   LightEstimates start;  // before the last optimisation
   std::string termination;
+  std::vector<LightSet> error_curve{};
 };
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
   return some;
+}
+
+std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
+                                     const LightEstimates& beside_surfaces, const LightCountResult& count) {
+  std::vector<LightSet> curve;
+  for (const LightEstimates& set : count.sets) {
+    if (set.empty()) continue;
+    const LightEstimates all = joined(beside_surfaces, set);
+    LightSet& best = curve.emplace_back();
+    for (const LightEstimate& light : all) best.lights.push_back(point_light(light));
+    best.relative_l2 = relative_error(judged, illumination_of(response, all));
+  }
+  return curve;
 }
 
 int most_lights(const SolveOptions& options) {
@@ -202,11 +220,9 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
     remaining = less(search.searched, response, beside_surfaces);
     count = find_the_rest();
   }
-  StageFigures figures{{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}};
-  for (std::size_t n = 0; n < count.error_curve.size(); ++n) {
-    figures.emplace_back(fmt::format("relative_l2_with_{}_lights", n + 1), count.error_curve[n]);
-  }
-  clock.finish("joint_refinement", figures);
+  const std::vector<LightSet> error_curve = error_curve_of(response, search.judged, beside_surfaces, count);
+  clock.finish("joint_refinement",
+               {{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}});
   // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
   // blind to all others.
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
@@ -219,7 +235,8 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
-                                     : "no further light explains more"};
+                                     : "no further light explains more",
+          error_curve};
 }
 
 int verification_samples(const SolveOptions& options, std::size_t receivers) {
@@ -309,6 +326,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.initial_relative_l2 = relative_error(judged, illumination_of(response, optimum.start));
   result.relative_l2_cached = relative_error(judged, illumination_of(response, optimum.lights));
   result.termination = optimum.termination;
+  result.error_curve = optimum.error_curve;
   result.target_noise = target_noise(problem.target);
   verify(problem, options, control, result);
   clock.finish("verification",

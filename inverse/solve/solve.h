@@ -36,7 +36,14 @@ struct SolveOptions {
 
 struct FoundLight {
   renderer::PointLight light;
-  double contribution = 0;  // ‖its illumination‖ / Σ over all found
+  double contribution = 0;                      // ‖its illumination‖ / Σ over all found
+  Vec3f position_interval, intensity_interval;  // half widths of 90 % intervals: metres, candela
+};
+
+// The best set of its size that a solve came by.
+struct LightSet {
+  std::vector<renderer::PointLight> lights;
+  double relative_l2 = 0;  // (3.6) over the important vertices
 };
 
 struct StageReport {
@@ -53,6 +60,7 @@ struct SolveResult {
   double verification_noise = 0;   // relative standard error of the fresh evaluation
   double target_noise = 0;         // relative L2 that the target's own noise is expected to give; 0: not known
   double initial_seconds = 0, optimal_seconds = 0, cache_seconds = 0, total_seconds = 0;
+  std::vector<LightSet> error_curve;  // of ever more lights; of the joint method alone
   std::vector<StageReport> stages;
   int important_vertices = 0;
   std::string termination;

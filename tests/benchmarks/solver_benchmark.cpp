@@ -188,6 +188,7 @@ Target kept_target(const Stage& stage, const std::vector<PointLight>& lights, co
 // Of lights found, nearest pairs first; relative to the diagonal and to the true intensity.
 struct Distances {
   std::vector<double> position, intensity;
+  std::size_t inside = 0, parameters = 0;  // of their 90 % intervals
 };
 
 Distances match(const std::vector<PointLight>& truth, const std::vector<FoundLight>& found, float diagonal) {
@@ -208,8 +209,15 @@ Distances match(const std::vector<PointLight>& truth, const std::vector<FoundLig
     if (truth_taken[pair.truth] || found_taken[pair.found]) continue;
     truth_taken[pair.truth] = found_taken[pair.found] = true;
     distances.position.push_back(double(pair.distance / diagonal));
+    const FoundLight& light = found[pair.found];
     const Vec3f wanted = truth[pair.truth].intensity;
-    distances.intensity.push_back(double(length(found[pair.found].light.intensity - wanted) / length(wanted)));
+    distances.intensity.push_back(double(length(light.light.intensity - wanted) / length(wanted)));
+    for (int a = 0; a < 3; ++a) {
+      const float off = std::abs(light.light.position[a] - truth[pair.truth].position[a]);
+      distances.inside += off <= light.position_interval[a] ? 1 : 0;
+      distances.inside += std::abs(light.light.intensity[a] - wanted[a]) <= light.intensity_interval[a] ? 1 : 0;
+      distances.parameters += 2;
+    }
   }
   return distances;
 }
@@ -221,7 +229,7 @@ double quantile(std::vector<double> values, double q) {
 }
 
 struct Row {
-  std::size_t exact = 0, off_by_more = 0, cases = 0;
+  std::size_t exact = 0, off_by_more = 0, cases = 0, inside = 0, parameters = 0;
   std::vector<double> beyond, position, intensity, seconds, total;
 };
 
@@ -234,6 +242,8 @@ void add_case(Row& row, const Stage& stage, const std::vector<PointLight>& truth
   const Distances distances = match(truth, result.lights, stage.diagonal);
   row.position.insert(row.position.end(), distances.position.begin(), distances.position.end());
   row.intensity.insert(row.intensity.end(), distances.intensity.begin(), distances.intensity.end());
+  row.inside += distances.inside;
+  row.parameters += distances.parameters;
   row.seconds.push_back(result.initial_seconds + result.optimal_seconds);
   row.total.push_back(result.total_seconds - result.cache_seconds);
 }
@@ -246,6 +256,10 @@ void print_case(std::size_t set, const Stage& stage, const std::vector<PointLigh
     std::printf("    light %zu: %.3f %% off, intensity %.2f %%\n", k + 1, 100 * distances.position[k],
                 100 * distances.intensity[k]);
   }
+  std::printf("    error in %% by number of lights:");
+  for (const LightSet& point : result.error_curve)
+    std::printf(" %zu: %.3f", point.lights.size(), 100 * point.relative_l2);
+  std::puts("");
   for (const StageReport& report : result.stages) {
     std::printf("    %-22s %6.2f s", report.name.c_str(), report.seconds);
     for (const auto& [name, value] : report.figures) std::printf("  %s %.4g", name.c_str(), value);
@@ -255,10 +269,12 @@ void print_case(std::size_t set, const Stage& stage, const std::vector<PointLigh
 }
 
 void print_row(std::size_t lights, const Row& row) {
-  std::printf("%6zu %7zu %6.0f %8zu %8.2f %7.2f %9.3f %8.3f %9.2f %8.2f %8.2f\n", lights, row.cases,
+  std::printf("%6zu %7zu %6.0f %8zu %8.2f %7.2f %9.3f %8.3f %9.2f %8.0f %8.2f %8.2f\n", lights, row.cases,
               100 * double(row.exact) / double(row.cases), row.off_by_more, 100 * quantile(row.beyond, 0.5),
               100 * quantile(row.beyond, 1), 100 * quantile(row.position, 0.5), 100 * quantile(row.position, 0.95),
-              100 * quantile(row.intensity, 0.5), quantile(row.seconds, 0.5), quantile(row.total, 0.5));
+              100 * quantile(row.intensity, 0.5),
+              100 * double(row.inside) / double(std::max<std::size_t>(1, row.parameters)), quantile(row.seconds, 0.5),
+              quantile(row.total, 0.5));
   std::fflush(stdout);
 }
 
@@ -279,7 +295,8 @@ int main(int argc, char** argv) {
 
   std::printf("%s, %zu receivers, noise %.1f %%, method %s, seed %llu\n", options.scene.c_str(), receivers.size(),
               100 * options.noise, options.method.c_str(), static_cast<unsigned long long>(options.seed));
-  std::puts("lights   cases exact%  off > 1  beyond%  worst%  position%   95 %  intensity%  seconds  w/o bake");
+  std::puts(
+      "lights   cases exact%  off > 1  beyond%  worst%  position%   95 %  intensity%  inside%  seconds  w/o bake");
   for (const std::size_t count : options.lights) {
     Row row;
     for (std::size_t set = 0; set < options.sets; ++set) {

@@ -10,6 +10,7 @@
 #include "inverse/solve/optimize_simplex.h"
 #include "inverse/solve/refine_joint.h"
 #include "inverse/solve/settle_positions.h"
+#include "inverse/solve/split_lights.h"
 #include "tests/inverse/solve/painted_corner.h"
 
 namespace chiaro::inverse {
@@ -203,9 +204,35 @@ TEST(Insertion, ProposesTheLightThatIsMissing) {
   const LightEstimates known = known_lights(2);
   const DirectProblem problem(known);
   const LightEstimates proposed = propose_insertions(problem.response(), problem.observations(), {known[0]});
-  ASSERT_FALSE(proposed.empty());
-  // The grid's best is the last; a cell's diagonal away at most.
-  EXPECT_LT((proposed.back().position - known[1].position).norm(), 1.8 * spacing_of(problem));
+  // A cell's diagonal away at most.
+  EXPECT_LT(farthest_from({known[1]}, positions_of(proposed)), 1.8 * spacing_of(problem));
+}
+
+TEST(SplitLights, PartsTwoLightsThatWereSeenAsOne) {
+  const LightEstimates known{{{1.7, 1.5, 2}, {20, 12, 8}}, {{2.3, 1.6, 2.1}, {10, 18, 20}}};
+  const DirectProblem problem(known);
+  const JointRefinement one =
+      refine_joint(problem.response(), problem.observations(), {{{2, 1.5, 2}, Array3d::Ones()}});
+  const auto splits = propose_splits(problem.response(), problem.observations(), one.lights, 5);
+  ASSERT_EQ(splits.size(), 1U);
+  ASSERT_EQ(splits[0].size(), 2U);
+  const auto columns = evaluate_columns(problem.response(), splits[0], Evaluation::kTracedVisibility);
+  EXPECT_LT(relative_error(problem.observations(),
+                           total_illumination(columns, splits[0], problem.observations().wanted.rows())),
+            0.8 * one.error);
+  const JointRefinement two = refine_joint(problem.response(), problem.observations(), splits[0]);
+  EXPECT_LT(farthest_from(known, positions_of(two.lights)), 0.01);
+}
+
+TEST(SplitLights, TriesTheLightThatStandsForTwoFirst) {
+  const LightEstimates known{
+      {{1.7, 1.5, 2}, {20, 12, 8}}, {{2.3, 1.6, 2.1}, {10, 18, 20}}, {{3.3, 2.4, 0.6}, {9, 9, 9}}};
+  const DirectProblem problem(known);
+  const JointRefinement merged = refine_joint(problem.response(), problem.observations(),
+                                              {{known[2].position, Array3d::Ones()}, {{2, 1.5, 2}, Array3d::Ones()}});
+  const auto splits = propose_splits(problem.response(), problem.observations(), merged.lights, 1);
+  ASSERT_EQ(splits.size(), 1U);
+  EXPECT_LT((splits[0][0].position - merged.lights[0].position).norm(), 1e-12);
 }
 
 TEST(LightsBesideSurfaces, AreNoneWhereNoneOutshinesTheRest) {

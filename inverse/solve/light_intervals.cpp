@@ -1,0 +1,85 @@
+#include "inverse/solve/light_intervals.h"
+
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+#include "renderer/core/control.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr int kParameters = 6;      // of a light: x, y, z, red, green, blue
+constexpr double kNinety = 1.645;   // standard deviations to either side
+constexpr double kUnknown = 1e-10;  // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
+
+std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
+  std::vector<ColumnWithGradient> columns(lights.size());
+  renderer::parallel_for(lights.size(), [&](std::size_t j) {
+    columns[j] = response.evaluate_with_gradient(lights[j].position, Evaluation::kTracedVisibility);
+    if (lights[j].correction.size() > 0) columns[j].value += lights[j].correction;
+  });
+  return columns;
+}
+
+// Receivers × parameters, by what one channel shows of them.
+Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights, int channel) {
+  const auto n = Eigen::Index(lights.size());
+  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(columns[0].value.rows(), kParameters * n);
+  for (Eigen::Index l = 0; l < n; ++l) {
+    const ColumnWithGradient& column = columns[std::size_t(l)];
+    for (int a = 0; a < 3; ++a) {
+      j.col(kParameters * l + a) = lights[std::size_t(l)].intensity[channel] * column.gradient[a].col(channel);
+    }
+    j.col(kParameters * l + 3 + channel) = column.value.col(channel);
+  }
+  return j;
+}
+
+// Variances of the parameters; infinite where the normal matrix tells nothing.
+Eigen::VectorXd variances(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& scatter) {
+  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * normal * scale.asDiagonal());
+  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double e) { return e > kUnknown ? 1 / e : 0; });
+  const Eigen::MatrixXd solved =
+      eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
+  Eigen::VectorXd variance = (solved * scatter * solved.transpose()).diagonal().cwiseProduct(scale.cwiseAbs2());
+  for (Eigen::Index k = 0; k < variance.size(); ++k) {
+    double known = scale[k] > 0 ? 1 : 0;
+    for (Eigen::Index e = 0; e < inverse.size(); ++e) {
+      if (inverse[e] <= 0) known -= eigen.eigenvectors()(k, e) * eigen.eigenvectors()(k, e);
+    }
+    if (known < 0.5) variance[k] = std::numeric_limits<double>::infinity();
+  }
+  return variance;
+}
+
+}  // namespace
+
+std::vector<LightInterval> light_intervals(const LightResponse& response, const Observations& observations,
+                                           const LightEstimates& lights) {
+  if (lights.empty()) return {};
+  const std::vector<ColumnWithGradient> columns = columns_of(response, lights);
+  const auto parameters = Eigen::Index(kParameters * lights.size());
+  const Eigen::VectorXd weight = observations.sqrt_weight.cwiseAbs2();
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(parameters, parameters);
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(weight.size(), parameters);  // of each receiver
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::MatrixXd j = jacobian(columns, lights, c);
+    Eigen::VectorXd residual = -observations.wanted.col(c);
+    for (std::size_t l = 0; l < lights.size(); ++l) residual += lights[l].intensity[c] * columns[l].value.col(c);
+    normal += j.transpose() * weight.asDiagonal() * j;
+    pull += weight.cwiseProduct(residual).asDiagonal() * j;
+  }
+  // What the fit has taken up of the noise.
+  const double freedom = double(3 * weight.size()) / std::max(1.0, double(3 * weight.size() - parameters));
+  const Eigen::VectorXd variance = variances(normal, freedom * pull.transpose() * pull);
+  std::vector<LightInterval> intervals;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const Eigen::VectorXd half = kNinety * variance.segment<kParameters>(Eigen::Index(kParameters * l)).cwiseSqrt();
+    intervals.push_back({half.head<3>(), half.tail<3>()});
+  }
+  return intervals;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "inverse/solve/observations.h"
+
+namespace chiaro::inverse {
+
+// Half widths of 90 % intervals, each parameter by itself.
+struct LightInterval {
+  Eigen::Vector3d position;  // metres, along x, y, z
+  Eigen::Array3d intensity;  // candela per channel
+};
+
+// How sure the least-squares lights are, from derivatives at fixed visibility and from what the fit leaves, which holds
+// the noise of the target and the errors of transport alike; no noise need be known. One per light, in their order.
+// Infinite where receivers tell nothing of a parameter.
+// Source: White, A heteroskedasticity-consistent covariance matrix estimator and a direct test for heteroskedasticity,
+// 1980; a receiver's channels count as one cluster.
+std::vector<LightInterval> light_intervals(const LightResponse& response, const Observations& observations,
+                                           const LightEstimates& lights);
+
+}  // namespace chiaro::inverse
