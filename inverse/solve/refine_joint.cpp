@@ -68,9 +68,11 @@ class IlluminationResiduals final : public ceres::CostFunction {
         lit.col(lit_count++) = observations_.sqrt_weight.cwiseProduct(column.value.col(channel));
       }
     }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(lit.leftCols(lit_count));
-    const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(receivers, qr.rank());
-    moved -= basis * (basis.transpose() * moved).eval();
+    if (lit_count > 0) {
+      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(lit.leftCols(lit_count));
+      const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(receivers, qr.rank());
+      moved -= basis * (basis.transpose() * moved).eval();
+    }
     using Block = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     for (Eigen::Index j = 0; j < lights; ++j) {
       if (jacobians[j] == nullptr) continue;
