@@ -44,7 +44,8 @@ std::string text_of_curve(const std::vector<inverse::LightSet>& curve) {
 std::string text_of_interval(renderer::Vec3f half) { return fmt::format("{:.2g}", max_component(half)); }
 
 std::string light_table(const std::vector<inverse::FoundLight>& lights) {
-  std::vector<std::vector<std::string>> rows{{"light", "position (m)", "± 90 %", "intensity (cd)", "± 90 %", "contribution"}};
+  std::vector<std::vector<std::string>> rows{
+      {"light", "position (m)", "± 90 %", "intensity (cd)", "± 90 %", "contribution"}};
   for (const inverse::FoundLight& found : lights) {
     rows.push_back({fmt::format("{}", rows.size()), text_of_vector(found.light.position),
                     text_of_interval(found.position_interval), text_of_vector(found.light.intensity),

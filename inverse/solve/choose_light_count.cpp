@@ -162,10 +162,7 @@ class Search {
   Candidate refitted_without(LightEstimates lights, std::vector<Column> columns, std::size_t without) const {
     lights.erase(lights.begin() + std::ptrdiff_t(without));
     columns.erase(columns.begin() + std::ptrdiff_t(without));
-    const IntensityFit fit = fit_intensities(observations_, columns);
-    for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
-    const double error =
-        relative_error(observations_, total_illumination(columns, lights, observations_.wanted.rows()));
+    const double error = refit_intensities(observations_, columns, lights);
     return {std::move(lights), error};
   }
 

@@ -116,18 +116,28 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
   return fit;
 }
 
+double refit_intensities(const Observations& observations, const std::vector<Column>& columns, LightEstimates& lights) {
+  const IntensityFit fit = fit_intensities(observations, columns);
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
+  return relative_error(observations, total_illumination(columns, lights, observations.wanted.rows()));
+}
+
 double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stands_for) {
   const double squared = energy.cwiseAbs2().cwiseQuotient(stands_for).sum();
   return squared > 0 ? energy.sum() * energy.sum() / squared / stands_for.sum() : 1;
 }
 
+Column evaluate_column(const LightResponse& response, const LightEstimate& light, Evaluation evaluation) {
+  Column column = response.evaluate(light.position, evaluation);
+  if (light.correction.size() > 0) column += light.correction;
+  return column;
+}
+
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      Evaluation evaluation) {
   std::vector<Column> columns(lights.size());
-  renderer::parallel_for(lights.size(), [&](std::size_t j) {
-    columns[j] = response.evaluate(lights[j].position, evaluation);
-    if (lights[j].correction.size() > 0) columns[j] += lights[j].correction;
-  });
+  renderer::parallel_for(lights.size(),
+                         [&](std::size_t j) { columns[j] = evaluate_column(response, lights[j], evaluation); });
   return columns;
 }
 

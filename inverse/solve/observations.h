@@ -64,7 +64,13 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
 // that stand for them. energy: what each of these adds to the norm, in the name of all that it stands for.
 double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stands_for);
 
-// Columns of all lights with their corrections, evaluated in parallel.
+// Gives the lights the intensities that fit their columns best. Returns the error that is left, (3.6).
+double refit_intensities(const Observations& observations, const std::vector<Column>& columns, LightEstimates& lights);
+
+// Column of a light with its correction.
+Column evaluate_column(const LightResponse& response, const LightEstimate& light, Evaluation evaluation);
+
+// Those of all lights, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      Evaluation evaluation);
 

@@ -41,12 +41,9 @@ class Settling {
   double error_with(std::size_t moved, const Eigen::Vector3d& position) {
     ++best_.evaluations;
     columns_[moved] = column(moved, position);
-    const IntensityFit fit = fit_intensities(observations_, columns_);
     LightEstimates lights = best_.lights;
     lights[moved].position = position;
-    for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
-    const double error =
-        relative_error(observations_, total_illumination(columns_, lights, observations_.wanted.rows()));
+    const double error = refit_intensities(observations_, columns_, lights);
     if (error < best_.error) best_.lights = std::move(lights), best_.error = error;
     return error;
   }

@@ -43,25 +43,19 @@ Split split_light(const LightResponse& response, const Observations& observation
   const double diagonal = double(region.diagonal());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
       curvature(response, weighted_residual, lights[split], kDifference * diagonal));
+  const auto half = [&](double side) {
+    LightEstimate light = lights[split];
+    light.position = (light.position + side * kHalfWidth * diagonal * eigen.eigenvectors().col(0))
+                         .cwiseMax(to_eigen(region.min))
+                         .cwiseMin(to_eigen(region.max));
+    return light;
+  };
   Split result{lights};
-  LightEstimate half = lights[split];
-  for (const double side : {-1.0, 1.0}) {
-    half.position = (lights[split].position + side * kHalfWidth * diagonal * eigen.eigenvectors().col(0))
-                        .cwiseMax(to_eigen(region.min))
-                        .cwiseMin(to_eigen(region.max));
-    Column column = response.evaluate(half.position, Evaluation::kTracedVisibility);
-    if (half.correction.size() > 0) column += half.correction;
-    if (side < 0) {
-      result.lights[split] = half;
-      columns[split] = std::move(column);
-    } else {
-      result.lights.push_back(half);
-      columns.push_back(std::move(column));
-    }
-  }
-  const IntensityFit fit = fit_intensities(observations, columns);
-  for (std::size_t j = 0; j < result.lights.size(); ++j) result.lights[j].intensity = fit.intensity[j];
-  result.error = relative_error(observations, total_illumination(columns, result.lights, observations.wanted.rows()));
+  result.lights[split] = half(-1);
+  result.lights.push_back(half(1));
+  columns[split] = evaluate_column(response, result.lights[split], Evaluation::kTracedVisibility);
+  columns.push_back(evaluate_column(response, result.lights.back(), Evaluation::kTracedVisibility));
+  result.error = refit_intensities(observations, columns, result.lights);
   return result;
 }
 
