@@ -11,6 +11,17 @@ namespace {
 
 std::string last_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
 
+std::function<void(const std::string&)> naming_the_option(const OptionText& text,
+                                                          std::function<void(const std::string&)> parse) {
+  return [parse = std::move(parse), name = last_name(text.names)](const std::string& value) {
+    try {
+      parse(value);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}", name, error.what()));
+    }
+  };
+}
+
 void refuse_empty(const std::string& text) {
   if (text.empty()) throw UsageError("is empty");
 }
@@ -18,14 +29,18 @@ void refuse_empty(const std::string& text) {
 }  // namespace
 
 CLI::Option* add_parsed(CLI::App& command, const OptionText& text, std::function<void(const std::string&)> parse) {
-  const auto named = [parse = std::move(parse), name = last_name(text.names)](const std::string& value) {
-    try {
-      parse(value);
-    } catch (const UsageError& error) {
-      throw UsageError(fmt::format("{}: {}", name, error.what()));
-    }
+  return command.add_option_function<std::string>(text.names, naming_the_option(text, std::move(parse)), text.help)
+      ->type_name(text.value);
+}
+
+CLI::Option* add_repeated(CLI::App& command, const OptionText& text, std::function<void(const std::string&)> parse) {
+  const auto each = [parse = naming_the_option(text, std::move(parse))](const std::vector<std::string>& values) {
+    for (const std::string& value : values) parse(value);
   };
-  return command.add_option_function<std::string>(text.names, named, text.help)->type_name(text.value);
+  return command.add_option_function<std::vector<std::string>>(text.names, each, text.help)
+      ->type_name(text.value)
+      ->expected(1)
+      ->take_all();
 }
 
 CLI::Option* add_text(CLI::App& command, const OptionText& text, std::string& value) {

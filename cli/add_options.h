@@ -23,6 +23,9 @@ struct OptionText {
 // An option whose text is given to `parse`, which throws UsageError where it is wrong.
 CLI::Option* add_parsed(CLI::App& command, const OptionText& text, std::function<void(const std::string&)> parse);
 
+// One that may be given several times; each text is given to `parse`.
+CLI::Option* add_repeated(CLI::App& command, const OptionText& text, std::function<void(const std::string&)> parse);
+
 // One that must not be empty.
 CLI::Option* add_text(CLI::App& command, const OptionText& text, std::string& value);
 

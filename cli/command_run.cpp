@@ -113,33 +113,34 @@ void make_folders(const RunCommand& options) {
   make_folder(options.folder() / "frames");
 }
 
-int run_run(const RunCommand& options) {
+int run_run(RunCommand options) {
   Session session(options.common);
+  settle_constraints(options.choices);
   require_not_a_file(options.folder());
   require_color_choices(options.frame, true);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
   const inverse::Target target = load_solve_target(stage, options.choices);
-  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);
-  problem.kept_lights = lights_that_stay(stage, options.choices, session);
+  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   make_folders(options);
-  const JsonObject baked = bake_cache(options, stage, target, problem, session);
-  problem.cache_file = options.folder() / "cache.exr";
+  JsonObject summary;
+  if (problem.lights_in_place.empty()) {
+    summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
+    problem.cache_file = options.folder() / "cache.exr";
+  }
   const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
-  save_found_lights(options.scene, result, options.folder() / "lights.glb", options.choices.keep_lights);
+  save_found_lights(options.scene, result, options.folder() / "lights.glb", options.choices.constraints.keep_lights);
   const inverse::Target found = found_target(target, result);
   inverse::save_target(found, options.folder() / "found.glb");
   const inverse::TargetComparison comparison = inverse::compare_targets(found, target);
   const JsonList frames = render_cameras(options, stage, lights_of(result, problem), session);
-  print_summary(session, options, result,
-                {{"bake", baked},
-                 {"solve", solve_summary(result)},
-                 {"comparison", comparison_summary(comparison, target.receivers.positions[comparison.max_at])},
-                 {"frames", frames},
-                 {"seconds", session.seconds()}},
-                frames.size());
+  summary.emplace_back("solve", solve_summary(result));
+  summary.emplace_back("comparison", comparison_summary(comparison, target.receivers.positions[comparison.max_at]));
+  summary.emplace_back("frames", frames);
+  summary.emplace_back("seconds", session.seconds());
+  print_summary(session, options, result, summary, frames.size());
   return kDone;
 }
 

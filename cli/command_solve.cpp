@@ -27,21 +27,11 @@ inverse::SolveOptions with_report(inverse::SolveOptions options, const std::stri
   return options;
 }
 
-// A solve looks for lights where its cache has them, so the cache must not reach beyond the region asked for.
-void require_inside(const inverse::LightGrid& grid, const renderer::Box3f& region, const std::string& cache) {
-  const float tolerance = 1e-4F * (1 + region.diagonal());
-  const renderer::Vec3f room{tolerance, tolerance, tolerance};
-  const renderer::Box3f grown{region.min - room, region.max + room}, lights = grid.region;
-  if (grown.contains(lights.min) && grown.contains(lights.max)) return;
-  throw renderer::Error({cache, "grid", "reaches beyond --region", "a cache baked with the same --region"});
-}
-
 // A cache knows how many bounces it holds; the final check traces as many unless told otherwise.
 void use_cache(const SolveCommand& options, inverse::SolveProblem& problem) {
   if (options.cache.empty()) return;
   problem.cache_file = options.cache;
   const inverse::TransportCache header = inverse::load_transport_cache_header(options.cache);
-  if (problem.grid.region) require_inside(header.grid, *problem.grid.region, options.cache);
   if (!options.choices.transport.bounces) problem.bake.bounces = header.settings.bounces;
 }
 
@@ -51,8 +41,9 @@ void print_summary(Session& session, const SolveCommand& options, const inverse:
   session.finish(solve_summary(result), solve_text(result) + written);
 }
 
-int run_solve(const SolveCommand& options) {
+int run_solve(SolveCommand options) {
   Session session(options.common);
+  settle_constraints(options.choices);
   require_writable(options.output);
   require_writable(beside(options.output, ".json"));
   const LoadedStage stage =
@@ -60,12 +51,11 @@ int run_solve(const SolveCommand& options) {
   warn_of_scene_lights(stage, options.choices, session);
   const inverse::Target target = load_solve_target(stage, options.choices);
   session.stop_if_interrupted();
-  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common);
-  problem.kept_lights = lights_that_stay(stage, options.choices, session);
+  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   use_cache(options, problem);
   const inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
-  save_found_lights(options.scene, result, options.output, options.choices.keep_lights);
+  save_found_lights(options.scene, result, options.output, options.choices.constraints.keep_lights);
   print_summary(session, options, result);
   return kDone;
 }

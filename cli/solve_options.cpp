@@ -7,13 +7,12 @@
 #include "cli/add_options.h"
 #include "cli/output_paths.h"
 #include "cli/usage_error.h"
+#include "renderer/core/error.h"
 #include "renderer/io/light_file.h"
 #include "renderer/io/save_gltf.h"
 
 namespace chiaro::cli {
 namespace {
-
-constexpr CountRange kLightCount{1, 1000};
 
 inverse::SolveMethod parse_method(const std::string& text) {
   if (text == "thesis") return inverse::SolveMethod::kThesis;
@@ -26,12 +25,6 @@ void parse_importance_weights(const std::string& text, inverse::SolveOptions& so
   if (weights[0] + weights[1] <= 0) throw UsageError(fmt::format("'{}' (expected one above 0)", text));
   solve.geometry_weight = weights[0];
   solve.illumination_weight = weights[1];
-}
-
-void add_light_count_options(CLI::App& command, inverse::SolveOptions& solve) {
-  add_count(command, {"--max-lights", "N", fmt::format("At most N lights (default {})", solve.max_lights)},
-            solve.max_lights, kLightCount);
-  add_count(command, {"--lights", "N", "Exactly N lights"}, solve.exact_lights, kLightCount);
 }
 
 void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
@@ -56,16 +49,39 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
             solve.verification_samples, {1, 1 << 24});
 }
 
+// What stays lit: the environment, and with --keep-lights the scene's other lights.
+renderer::Lights lights_that_stay(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
+  const EnvironmentOptions& environment = choices.transport.environment;
+  return choices.constraints.keep_lights ? choose_lights(stage, "", environment, session)
+                                         : environment_of(stage, environment, session);
+}
+
+// With --keep-positions the scene's lights, but for environments. Error where there are none.
+renderer::Lights lights_in_place(const LoadedStage& stage, const SolveChoices& choices) {
+  if (!choices.constraints.keep_positions) return {};
+  renderer::Lights lights = stage.lights;
+  std::erase_if(lights, renderer::is_environment);
+  if (!lights.empty()) return lights;
+  throw renderer::Error({stage.scene->path, "lights", "there are none whose positions could be kept",
+                         "lights in the scene, or no --keep-positions"});
+}
+
 }  // namespace
+
+void settle_constraints(SolveChoices& choices) {
+  choices.constraints = choose_constraints(choices.constraint_options, choices.grid);
+  require_known_to(choices.solve.method, choices.constraints);
+  choices.solve.max_lights = choices.constraints.max_lights.value_or(choices.solve.max_lights);
+  choices.solve.exact_lights = choices.constraints.lights.value_or(0);
+}
 
 void add_solve_options(CLI::App& command, SolveChoices& choices) {
   add_input(command, {"--target", "T.glb", "The painted illumination"}, choices.target);
   add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, choices.target_scale,
              kPositive);
-  add_light_count_options(command, choices.solve);
   add_method_options(command, choices.solve);
-  add_flag(command, "--keep-lights", choices.keep_lights, "Lights of SCENE stay lit and untouched");
   add_grid_options(command, choices.grid);
+  add_constraint_options(command, choices.constraint_options);
   add_transport_options(command, choices.transport, "Gather rays per receiver of a bake");
 }
 
@@ -75,20 +91,19 @@ inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& 
   return target;
 }
 
-renderer::Lights lights_that_stay(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
-  const EnvironmentOptions& environment = choices.transport.environment;
-  return choices.keep_lights ? choose_lights(stage, "", environment, session)
-                             : environment_of(stage, environment, session);
-}
-
 inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,
-                                    const SolveChoices& choices, const CommonOptions& common) {
-  return {.tracer = *stage.tracer,
-          .target = target,
-          .cache_file = {},
-          .grid = light_grid_options(*stage.scene, choices.grid),
-          .bake = bake_settings(choices.transport, common),
-          .kept_lights = {}};
+                                    const SolveChoices& choices, const CommonOptions& common, Session& session) {
+  inverse::SolveProblem problem{.tracer = *stage.tracer,
+                                .target = target,
+                                .cache_file = {},
+                                .grid = {},
+                                .bake = bake_settings(choices.transport, common),
+                                .kept_lights = lights_that_stay(stage, choices, session),
+                                .places = place_rules(*stage.scene, choices.constraints),
+                                .intensities = intensity_rules(choices.constraints),
+                                .lights_in_place = lights_in_place(stage, choices)};
+  problem.grid = light_grid_options(choices.grid.size, boxes_around(*stage.scene, problem.places));
+  return problem;
 }
 
 inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOptions& common) {
@@ -100,7 +115,7 @@ inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOpt
 void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
   const auto own = stage.lights.size() -
                    std::size_t(std::count_if(stage.lights.begin(), stage.lights.end(), renderer::is_environment));
-  if (own == 0 || choices.keep_lights) return;
+  if (own == 0 || choices.constraints.keep_lights || choices.constraints.keep_positions) return;
   session.warn(
       fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path, own));
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/constraint_options.h"
 #include "cli/json_output.h"
 #include "cli/scene_loading.h"
 #include "cli/transport_options.h"
@@ -13,22 +14,23 @@ namespace chiaro::cli {
 struct SolveChoices {
   std::string target;
   float target_scale = 1;  // cd/m² per COLOR_0, where a target has no _ILLUMINATION
-  bool keep_lights = false;
+  ConstraintOptions constraint_options;
   GridOptions grid;
   TransportOptions transport;
   inverse::SolveOptions solve;
+  inverse::LightConstraints constraints;  // settled
 };
 
 void add_solve_options(CLI::App& command, SolveChoices& choices);
 
+// Fills in the constraints, from options and file. UsageError or Error where they are wrong.
+void settle_constraints(SolveChoices& choices);
+
 inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& choices);
 
-// What stays lit: the environment, and with --keep-lights the scene's other lights.
-renderer::Lights lights_that_stay(const LoadedStage& stage, const SolveChoices& choices, Session& session);
-
-// The problem without a cache file and without lights that stay. It refers to the stage and the target.
+// The problem without a cache file. It refers to the stage and the target.
 inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,
-                                    const SolveChoices& choices, const CommonOptions& common);
+                                    const SolveChoices& choices, const CommonOptions& common, Session& session);
 
 inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOptions& common);
 

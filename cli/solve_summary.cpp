@@ -6,11 +6,31 @@
 namespace chiaro::cli {
 namespace {
 
+// As in a light file.
+JsonObject light_fields(const renderer::PointLight& light) {
+  return {{"type", "point"}, {"name", light.name}, {"position", light.position}, {"intensity", light.intensity}};
+}
+JsonObject light_fields(const renderer::SpotLight& light) {
+  return {{"type", "spot"},
+          {"name", light.name},
+          {"position", light.position},
+          {"direction", light.direction},
+          {"intensity", light.intensity},
+          {"inner_cone_angle", light.inner_cone_angle},
+          {"outer_cone_angle", light.outer_cone_angle}};
+}
+JsonObject light_fields(const renderer::DirectionalLight& light) {
+  return {
+      {"type", "directional"}, {"name", light.name}, {"direction", light.direction}, {"intensity", light.illuminance}};
+}
+JsonObject light_fields(const renderer::EnvironmentLight& light) {
+  return {{"type", "environment"}, {"name", light.name}};
+}
+
 JsonObject light_summary(const inverse::FoundLight& found) {
-  JsonObject summary{{"type", "point"}};
-  if (!found.light.name.empty()) summary.emplace_back("name", found.light.name);
-  summary.emplace_back("position", found.light.position);
-  summary.emplace_back("intensity", found.light.intensity);
+  JsonObject summary = std::visit([](const auto& light) { return light_fields(light); }, found.light);
+  std::erase_if(summary,
+                [&](const auto& field) { return field.first == "name" && renderer::name_of(found.light).empty(); });
   summary.emplace_back("contribution", found.contribution);
   summary.emplace_back("interval_90",
                        JsonObject{{"position", found.position_interval}, {"intensity", found.intensity_interval}});
@@ -43,12 +63,22 @@ std::string text_of_curve(const std::vector<inverse::LightSet>& curve) {
 // The widest of three half widths.
 std::string text_of_interval(renderer::Vec3f half) { return fmt::format("{:.2g}", max_component(half)); }
 
+using PlaceAndBrightness = std::pair<std::string, std::string>;
+PlaceAndBrightness place_and_brightness(const renderer::DirectionalLight& light) {
+  return {"from afar", text_of_vector(light.illuminance) + " lx"};
+}
+PlaceAndBrightness place_and_brightness(const renderer::EnvironmentLight&) { return {"all around", ""}; }
+PlaceAndBrightness place_and_brightness(const auto& light) {
+  return {text_of_vector(light.position), text_of_vector(light.intensity)};
+}
+
 std::string light_table(const std::vector<inverse::FoundLight>& lights) {
   std::vector<std::vector<std::string>> rows{
       {"light", "position (m)", "± 90 %", "intensity (cd)", "± 90 %", "contribution"}};
   for (const inverse::FoundLight& found : lights) {
-    rows.push_back({fmt::format("{}", rows.size()), text_of_vector(found.light.position),
-                    text_of_interval(found.position_interval), text_of_vector(found.light.intensity),
+    const auto [position, intensity] =
+        std::visit([](const auto& light) { return place_and_brightness(light); }, found.light);
+    rows.push_back({fmt::format("{}", rows.size()), position, text_of_interval(found.position_interval), intensity,
                     text_of_interval(found.intensity_interval), text_of_percent(found.contribution)});
   }
   return table(rows);

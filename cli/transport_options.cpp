@@ -43,15 +43,27 @@ void add_grid_options(CLI::App& command, GridOptions& options) {
               "Lights along x, y and z, or as many as make a light between them right to E percent (default: about 700 "
               "together)"},
              [&options](const std::string& text) { options.size = parse_grid(text); });
-  add_parsed(command,
-             {"--region", "NODE|x0,y0,z0,x1,y1,z1",
-              "Where lights may stand: the bounds of a node, or a box in metres (default: the whole scene)"},
-             [&options](const std::string& text) { options.region = parse_region_text(text); });
+  add_repeated(command,
+               {"--region", "NODE|x0,y0,z0,x1,y1,z1",
+                "Where lights may stand: the bounds of a node, or a box in metres; again for a further one (default: "
+                "the whole scene)"},
+               [&options](const std::string& text) { options.regions.push_back(parse_region_text(text)); });
 }
 
-inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options) {
-  inverse::LightGridOptions grid{.counts = options.size.counts, .error = options.size.error};
-  if (!options.region.empty()) grid.region = inverse::parse_region(scene, options.region);
+std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<std::string>& regions) {
+  std::vector<renderer::Box3f> boxes;
+  for (const std::string& region : regions) boxes.push_back(inverse::parse_region(scene, region));
+  return boxes;
+}
+
+inverse::LightGridOptions light_grid_options(const GridSize& size, const std::vector<renderer::Box3f>& parts) {
+  inverse::LightGridOptions grid{.counts = size.counts, .parts = parts, .error = size.error};
+  if (parts.empty()) return grid;
+  grid.region.emplace();
+  for (const renderer::Box3f& part : parts) {
+    grid.region->extend(part.min);
+    grid.region->extend(part.max);
+  }
   return grid;
 }
 

@@ -33,11 +33,13 @@ inverse::BakeSettings bake_settings(const TransportOptions& transport, const Com
 // --grid and --region.
 struct GridOptions {
   GridSize size;
-  std::string region;
+  std::vector<std::string> regions;
 };
 
 void add_grid_options(CLI::App& command, GridOptions& options);
-inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options);
+std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<std::string>& regions);
+// parts: where lights may stand; none: anywhere.
+inverse::LightGridOptions light_grid_options(const GridSize& size, const std::vector<renderer::Box3f>& parts);
 
 // --on and --max-edge.
 struct SurfaceOptions {

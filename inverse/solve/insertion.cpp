@@ -105,7 +105,7 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
   }
   BestInsertion on_grid(residual);
   const std::vector<Vec3f>& grid = response.grid().positions;
-  for (std::size_t j = 0; j < grid.size(); ++j) {
+  for (const std::size_t j : response.grid_lights_near_places()) {
     on_grid.consider({to_eigen(grid[j]), Eigen::Array3d::Ones()}, response.grid_column(j));
   }
   on_grid.append_to(insertions);

@@ -48,12 +48,15 @@ std::size_t coarse_stride(const LightGrid& grid) {
 UnityLights spread_coarsely(const LightResponse& response) {
   const LightGrid& grid = response.grid();
   const std::size_t stride = coarse_stride(grid);
+  std::vector<char> allowed(grid.positions.size(), 0);
+  for (const std::size_t light : response.grid_lights_near_places()) allowed[light] = 1;
   UnityLights spread;
   for (std::size_t node = 0; node < grid.light_of_node.size(); ++node) {
     const auto c = coordinates(node, grid.counts);
     const bool taken = c[0] % stride == 0 && c[1] % stride == 0 && c[2] % stride == 0;
     if (!taken || grid.light_of_node[node] < 0) continue;
     const auto light = std::size_t(grid.light_of_node[node]);
+    if (allowed[light] == 0) continue;
     spread.nodes.push_back(node);
     const Vec3f p = grid.positions[light];
     spread.lights.push_back({{p.x, p.y, p.z}, Eigen::Array3d::Ones()});

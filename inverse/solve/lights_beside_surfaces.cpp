@@ -130,9 +130,12 @@ class SingleLight {
     return column;
   }
 
-  Place judge(const Eigen::Vector3d& position, double distance) const {
-    Place place{{position, Eigen::Array3d::Ones()}, 0, distance};
-    const Column column = column_at(position);
+  // Misfit infinite where no light may stand.
+  Place judge(const Eigen::Vector3d& wanted, double distance) const {
+    const auto position = response_.places().nearest(wanted);
+    if (!position) return {};
+    Place place{{*position, Eigen::Array3d::Ones()}, 0, distance};
+    const Column column = column_at(*position);
     fit_intensity(relative_, column, place.light);
     const Column left = observations_.wanted - column * place.light.intensity.matrix().asDiagonal();
     place.misfit = (relative_.sqrt_weight.asDiagonal() * left).squaredNorm() +

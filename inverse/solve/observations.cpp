@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "inverse/numerics/nnls.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -93,27 +92,19 @@ double relative_error(const Observations& observations, const Column& illuminati
 
 IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns) {
   const auto n = Eigen::Index(columns.size());
-  IntensityFit fit;
-  fit.intensity.assign(columns.size(), Eigen::Array3d::Zero());
-  std::array<numerics::NnlsResult, 3> results;
+  std::array<NormalEquations, 3> channels;
   renderer::parallel_for(3, [&](std::size_t channel) {
     const auto c = Eigen::Index(channel);
     Eigen::MatrixXd a(observations.wanted.rows(), n);
     for (Eigen::Index j = 0; j < n; ++j) {
       a.col(j) = observations.sqrt_weight.cwiseProduct(columns[std::size_t(j)].col(c));
     }
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd& gram = channels[channel].gram = Eigen::MatrixXd::Zero(n, n);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    const Eigen::VectorXd atb = a.transpose() * observations.sqrt_weight.cwiseProduct(observations.wanted.col(c));
-    results[channel] = numerics::nnls(gram, atb);
+    channels[channel].atb = a.transpose() * observations.sqrt_weight.cwiseProduct(observations.wanted.col(c));
   });
-  for (int c = 0; c < 3; ++c) {
-    for (std::size_t j = 0; j < columns.size(); ++j) fit.intensity[j][c] = results[c].x(Eigen::Index(j), 0);
-    fit.kkt_residual = std::max(fit.kkt_residual, results[c].kkt_residual);
-    fit.iterations += results[c].iterations;
-  }
-  return fit;
+  return fit_intensities(channels, observations.rules);
 }
 
 double refit_intensities(const Observations& observations, const std::vector<Column>& columns, LightEstimates& lights) {

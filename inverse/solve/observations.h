@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "inverse/solve/intensity_rules.h"
 #include "inverse/transport/light_response.h"
 
 namespace chiaro::inverse {
@@ -16,6 +17,7 @@ struct Observations {
   Eigen::VectorXd standard_error;  // of Ψ, cd/m²; 0 where it is not known
   double target_norm = 0;          // √Σ weight · Ψ²: the denominator of (3.6)
   double noise = 0;                // relative error that the standard errors give; 0: not known
+  IntensityRules rules{};          // what intensities may explain them
 
   // target_norm and noise, of the other members.
   void measure_target();
@@ -52,12 +54,7 @@ Column total_illumination(const std::vector<Column>& columns, const LightEstimat
 // D(I(p), Ψ) of eq. (3.6) over the important vertices.
 double relative_error(const Observations& observations, const Column& illumination);
 
-// Intensities by non-negative least squares for fixed columns, one system per colour channel.
-struct IntensityFit {
-  std::vector<Eigen::Array3d> intensity;
-  double kkt_residual = 0;
-  int iterations = 0;
-};
+// The intensities that fit fixed columns best, by the observations' rules.
 IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns);
 
 // Of how large a part of all receivers a squared norm speaks: (Σ e)² / Σ e² over their count, estimated from receivers

@@ -11,9 +11,13 @@ constexpr int kEvaluationsPerParameter = 250;
 constexpr double kIntensityStep = 0.3;  // of the intensity
 constexpr double kPositionStep = 0.5;   // of the grid's spacing
 
-LightEstimates unpack(const Eigen::VectorXd& x) {
+// At the nearest places where lights may stand.
+LightEstimates unpack(const Eigen::VectorXd& x, const AllowedPlaces& places) {
   LightEstimates lights;
-  for (Eigen::Index k = 0; k < x.size(); k += 6) lights.push_back({x.segment<3>(k), x.segment<3>(k + 3).array()});
+  for (Eigen::Index k = 0; k < x.size(); k += 6) {
+    const Eigen::Vector3d position = x.segment<3>(k);
+    if (const auto allowed = places.nearest(position)) lights.push_back({*allowed, x.segment<3>(k + 3).array()});
+  }
   return lights;
 }
 
@@ -41,7 +45,7 @@ SimplexOptimum optimize_simplex(const LightResponse& response, const Observation
     }
   }
   const auto error = [&](const Eigen::VectorXd& parameters) {
-    const LightEstimates lights = unpack(parameters);
+    const LightEstimates lights = unpack(parameters, response.places());
     const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
     return relative_error(observations, total_illumination(columns, lights, observations.wanted.rows()));
   };
@@ -50,7 +54,7 @@ SimplexOptimum optimize_simplex(const LightResponse& response, const Observation
   options.value_tolerance = 1e-5;
   options.parameter_tolerance = 1e-3;
   const numerics::NelderMeadResult result = numerics::nelder_mead(error, x, step, lower, upper, options);
-  return {unpack(result.x), result.value, result.evaluations};
+  return {unpack(result.x, response.places()), result.value, result.evaluations};
 }
 
 }  // namespace chiaro::inverse

@@ -6,6 +6,8 @@
 
 #include "inverse/solve/refine_joint.h"
 
+#include <limits>
+
 #include <ceres/ceres.h>
 #include <Eigen/QR>
 
@@ -14,18 +16,21 @@
 namespace chiaro::inverse {
 namespace {
 
-// Residuals of all receivers and channels, row 'channel · receivers + receiver'; one parameter block, x, y, z (metres),
-// per light.
+constexpr double kAtLimit = 1 - 1e-6;  // of the greatest intensity, or more: it is kept
+
+// Residuals of all receivers and channels, row 'channel · receivers + receiver'; one parameter block: x, y, z (metres)
+// of each light.
 class IlluminationResiduals final : public ceres::CostFunction {
  public:
   IlluminationResiduals(const LightResponse& response, const Observations& observations, const LightEstimates& start)
       : response_(response), observations_(observations), start_(start) {
     set_num_residuals(int(3 * observations.wanted.rows()));
-    for (std::size_t j = 0; j < start.size(); ++j) mutable_parameter_block_sizes()->push_back(3);
+    mutable_parameter_block_sizes()->push_back(int(3 * start.size()));
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const std::vector<ColumnWithGradient> columns = columns_at(parameters, jacobians != nullptr);
+    const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    const std::vector<ColumnWithGradient> columns = columns_at(parameters[0], with_jacobian);
     std::vector<Column> values;
     for (const ColumnWithGradient& column : columns) values.push_back(column.value);
     const IntensityFit fit = fit_intensities(observations_, values);
@@ -33,15 +38,15 @@ class IlluminationResiduals final : public ceres::CostFunction {
     out = -observations_.wanted;
     for (std::size_t j = 0; j < values.size(); ++j) out += values[j] * fit.intensity[j].matrix().asDiagonal();
     out = observations_.sqrt_weight.asDiagonal() * out;
-    for (int c = 0; jacobians != nullptr && c < 3; ++c) fill_jacobian(columns, fit, c, jacobians);
+    if (with_jacobian) fill_jacobian(columns, fit, jacobians[0]);
     return true;
   }
 
  private:
-  std::vector<ColumnWithGradient> columns_at(double const* const* parameters, bool with_gradient) const {
+  std::vector<ColumnWithGradient> columns_at(const double* parameters, bool with_gradient) const {
     std::vector<ColumnWithGradient> columns(start_.size());
     renderer::parallel_for(columns.size(), [&](std::size_t j) {
-      const Eigen::Vector3d position(parameters[j]);
+      const Eigen::Vector3d position(parameters + 3 * j);
       if (with_gradient) {
         columns[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
       } else {
@@ -52,32 +57,68 @@ class IlluminationResiduals final : public ceres::CostFunction {
     return columns;
   }
 
-  // What a move changes, less what intensities of the lights that shine make good.
-  void fill_jacobian(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit, int channel,
-                     double** jacobians) const {
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  // What a move changes, less what intensities make good as far as they may change.
+  void fill_jacobian(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit, double* jacobian) const {
     const Eigen::Index receivers = observations_.wanted.rows(), lights = Eigen::Index(columns.size());
-    Eigen::MatrixXd moved(receivers, 3 * lights), lit(receivers, lights);
-    Eigen::Index lit_count = 0;
-    for (Eigen::Index j = 0; j < lights; ++j) {
-      const ColumnWithGradient& column = columns[std::size_t(j)];
-      const double intensity = fit.intensity[std::size_t(j)][channel];
+    Eigen::Map<Jacobian> out(jacobian, 3 * receivers, 3 * lights);
+    for (int c = 0; c < 3; ++c) {
+      Eigen::MatrixXd moved = moved_by(columns, fit, c);
+      if (!observations_.rules.color_is_ruled()) take_off(free_columns(columns, fit, c), moved);
+      out.middleRows(c * receivers, receivers) = moved;
+    }
+    if (!observations_.rules.color_is_ruled() || fit.directions.empty()) return;
+    Eigen::MatrixXd all = out;
+    take_off(ruled_changes(columns, fit), all);
+    out = all;
+  }
+
+  // Receivers × 3 lights.
+  Eigen::MatrixXd moved_by(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit, int channel) const {
+    Eigen::MatrixXd moved(observations_.wanted.rows(), Eigen::Index(3 * columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) {
       for (int a = 0; a < 3; ++a) {
-        moved.col(3 * j + a) = intensity * observations_.sqrt_weight.cwiseProduct(column.gradient[a].col(channel));
-      }
-      if (intensity > 0) {
-        lit.col(lit_count++) = observations_.sqrt_weight.cwiseProduct(column.value.col(channel));
+        moved.col(Eigen::Index(3 * j) + a) =
+            fit.intensity[j][channel] * observations_.sqrt_weight.cwiseProduct(columns[j].gradient[a].col(channel));
       }
     }
-    if (lit_count > 0) {
-      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(lit.leftCols(lit_count));
-      const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(receivers, qr.rank());
-      moved -= basis * (basis.transpose() * moved).eval();
+    return moved;
+  }
+
+  // Of the lights whose intensity may go up and down.
+  Eigen::MatrixXd free_columns(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit,
+                               int channel) const {
+    Eigen::MatrixXd free(observations_.wanted.rows(), Eigen::Index(columns.size()));
+    Eigen::Index count = 0;
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      const double intensity = fit.intensity[j][channel];
+      if (!(intensity > 0 && intensity < kAtLimit * observations_.rules.max_intensity)) continue;
+      free.col(count++) = observations_.sqrt_weight.cwiseProduct(columns[j].value.col(channel));
     }
-    using Block = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-    for (Eigen::Index j = 0; j < lights; ++j) {
-      if (jacobians[j] == nullptr) continue;
-      Eigen::Map<Block>(jacobians[j] + channel * receivers * 3, receivers, 3) = moved.middleCols<3>(3 * j);
+    return free.leftCols(count);
+  }
+
+  // Of all channels, one below the other.
+  Eigen::MatrixXd ruled_changes(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit) const {
+    const Eigen::Index receivers = observations_.wanted.rows();
+    Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(3 * receivers, Eigen::Index(fit.directions.size()));
+    for (std::size_t k = 0; k < fit.directions.size(); ++k) {
+      for (std::size_t j = 0; j < columns.size(); ++j) {
+        for (int c = 0; c < 3; ++c) {
+          changes.col(Eigen::Index(k)).segment(c * receivers, receivers) +=
+              fit.directions[k](Eigen::Index(j), c) * observations_.sqrt_weight.cwiseProduct(columns[j].value.col(c));
+        }
+      }
     }
+    return changes;
+  }
+
+  static void take_off(const Eigen::MatrixXd& changes, Eigen::MatrixXd& moved) {
+    if (changes.cols() == 0) return;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(changes);
+    const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(changes.rows(), qr.rank());
+    moved -= basis * (basis.transpose() * moved).eval();
   }
 
   const LightResponse& response_;
@@ -85,15 +126,44 @@ class IlluminationResiduals final : public ceres::CostFunction {
   const LightEstimates& start_;  // for the corrections
 };
 
-void set_bounds(ceres::Problem& problem, double* block, const Box3f& region) {
-  for (int a = 0; a < 3; ++a) {
-    const double low = double(region.min[a]), high = double(region.max[a]);
-    block[a] = std::clamp(block[a], low, high);
-    // A region that is flat along an axis fixes that coordinate; Ceres wants room between bounds.
-    problem.SetParameterLowerBound(block, a, low);
-    problem.SetParameterUpperBound(block, a, std::max(high, low + 1e-9));
-  }
+std::vector<Eigen::Vector3d> positions_of(const double* x, int size) {
+  std::vector<Eigen::Vector3d> positions;
+  for (int k = 0; k < size; k += 3) positions.emplace_back(x + k);
+  return positions;
 }
+
+// Steps that lead where lights may not stand end at the nearest place where they may, or where they began.
+class AllowedPositions final : public ceres::Manifold {
+ public:
+  AllowedPositions(const AllowedPlaces& places, std::size_t lights) : places_(places), size_(int(3 * lights)) {}
+
+  int AmbientSize() const override { return size_; }
+  int TangentSize() const override { return size_; }
+  bool Plus(const double* x, const double* delta, double* result) const override {
+    Eigen::Map<Eigen::VectorXd> sum(result, size_);
+    sum = Eigen::Map<const Eigen::VectorXd>(x, size_) + Eigen::Map<const Eigen::VectorXd>(delta, size_);
+    std::vector<Eigen::Vector3d> positions = positions_of(result, size_);
+    if (!places_.settle(positions)) positions = positions_of(x, size_);
+    for (std::size_t j = 0; j < positions.size(); ++j) sum.segment<3>(Eigen::Index(3 * j)) = positions[j];
+    return true;
+  }
+  bool PlusJacobian(const double*, double* jacobian) const override { return identity(jacobian); }
+  bool Minus(const double* y, const double* x, double* difference) const override {
+    Eigen::Map<Eigen::VectorXd>(difference, size_) =
+        Eigen::Map<const Eigen::VectorXd>(y, size_) - Eigen::Map<const Eigen::VectorXd>(x, size_);
+    return true;
+  }
+  bool MinusJacobian(const double*, double* jacobian) const override { return identity(jacobian); }
+
+ private:
+  bool identity(double* jacobian) const {
+    Eigen::Map<Eigen::MatrixXd>(jacobian, size_, size_).setIdentity();
+    return true;
+  }
+
+  const AllowedPlaces& places_;
+  int size_;
+};
 
 ceres::Solver::Options solver_options(const JointRefinementOptions& options) {
   ceres::Solver::Options o;
@@ -104,8 +174,6 @@ ceres::Solver::Options solver_options(const JointRefinementOptions& options) {
   o.parameter_tolerance = 1e-7;
   // Shadow edges make the cost rough: a rise along the way to a deeper valley is allowed.
   o.use_nonmonotonic_steps = true;
-  // Steps that end at the region's border are cut off there: searching along them takes more than half of the time.
-  o.max_num_line_search_step_size_iterations = 0;
   o.logging_type = ceres::SILENT;
   o.num_threads = 1;
   return o;
@@ -121,17 +189,23 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
     result.termination = "no lights";
     return result;
   }
+  std::vector<Eigen::Vector3d> positions;
+  for (const LightEstimate& light : start) positions.push_back(light.position);
+  if (!response.places().settle(positions)) {
+    result.error = std::numeric_limits<double>::infinity();
+    result.termination = "no place for all lights";
+    return result;
+  }
   result.lights = start;
   ceres::Problem problem;
-  std::vector<double*> blocks;
-  for (LightEstimate& light : result.lights) blocks.push_back(light.position.data());
-  problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, blocks);
-  for (double* block : blocks) set_bounds(problem, block, response.grid().region);
+  double* const parameters = positions.front().data();
+  problem.AddParameterBlock(parameters, int(3 * start.size()), new AllowedPositions(response.places(), start.size()));
+  problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, parameters);
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  const IntensityFit fit =
-      fit_intensities(observations, evaluate_columns(response, result.lights, Evaluation::kTracedVisibility));
-  for (std::size_t j = 0; j < start.size(); ++j) result.lights[j].intensity = fit.intensity[j];
+  for (std::size_t j = 0; j < start.size(); ++j) result.lights[j].position = positions[j];
+  refit_intensities(observations, evaluate_columns(response, result.lights, Evaluation::kTracedVisibility),
+                    result.lights);
   result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
   result.iterations = int(summary.iterations.size());
   result.termination = ceres::TerminationTypeToString(summary.termination_type);

@@ -19,7 +19,8 @@ struct JointRefinementOptions {
 };
 
 // Levenberg–Marquardt over all positions at once, with analytic Jacobians at fixed visibility and the best intensities
-// ≥ 0 wherever the lights stand; positions inside the grid's region. Never worse than `start`.
+// ≥ 0 wherever the lights stand; positions where the response lets lights stand. Never worse than
+// `start`, moved there; without lights, and its error infinite, where there is no place for all of them.
 JointRefinement refine_joint(const LightResponse& response, const Observations& observations,
                              const LightEstimates& start, const JointRefinementOptions& options = {});
 

@@ -133,8 +133,8 @@ Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct,
 }
 
 // As far as the step goes, within the region and the longest step; true: it moved.
-bool take(const Eigen::VectorXd& step, const Box3f& region, LightEstimates& lights) {
-  const double diagonal = double(region.diagonal());
+bool take(const Eigen::VectorXd& step, const LightResponse& response, LightEstimates& lights) {
+  const double diagonal = double(response.grid().region.diagonal());
   double longest = 0;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     longest = std::max(longest, step.segment<3>(Eigen::Index(3 * j)).norm());
@@ -142,9 +142,8 @@ bool take(const Eigen::VectorXd& step, const Box3f& region, LightEstimates& ligh
   const double part = std::min(1.0, kLongestStep * diagonal / std::max(longest, 1e-300));
   for (std::size_t j = 0; j < lights.size(); ++j) {
     LightEstimate& light = lights[j];
-    light.position = (light.position + part * step.segment<3>(Eigen::Index(3 * j)))
-                         .cwiseMax(to_eigen(region.min))
-                         .cwiseMin(to_eigen(region.max));
+    const Eigen::Vector3d moved = light.position + part * step.segment<3>(Eigen::Index(3 * j));
+    light.position = response.places().nearest(moved).value_or(light.position);
     const auto change = step.segment<3>(Eigen::Index(3 * (lights.size() + j)));
     light.intensity = (light.intensity + part * change.array()).max(0);
   }
@@ -158,19 +157,22 @@ void descend(const LightResponse& response, const Observations& observations, co
     const Column residual = residual_of(observations, direct, indirect, lights);
     const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kOutlier);
     const Eigen::VectorXd step = gauss_newton_step(direct, indirect, lights, residual, weight);
-    if (!step.allFinite() || !take(step, response.grid().region, lights)) return;
+    if (!step.allFinite() || !take(step, response, lights)) return;
   }
 }
 
 // A light whose indirect light stayed behind while it moved is led past its place in one round and back in the next.
 // The ratio of both moves tells where it would come to rest (Aitken's Δ²).
 // earlier: before the round before; empty in the first.
-void come_to_rest(const LightEstimates& earlier, const LightEstimates& before, LightEstimates& lights) {
+void come_to_rest(const AllowedPlaces& places, const LightEstimates& earlier, const LightEstimates& before,
+                  LightEstimates& lights) {
   for (std::size_t j = 0; j < earlier.size(); ++j) {
     const Eigen::Vector3d last_move = before[j].position - earlier[j].position;
     const Eigen::Vector3d move = lights[j].position - before[j].position;
     const double ratio = move.dot(last_move) / std::max(last_move.squaredNorm(), 1e-300);
-    if (ratio < 0 && ratio > -1) lights[j].position = before[j].position + move / (1 - ratio);
+    if (!(ratio < 0 && ratio > -1)) continue;
+    const Eigen::Vector3d at_rest = before[j].position + move / (1 - ratio);
+    lights[j].position = places.nearest(at_rest).value_or(lights[j].position);
   }
 }
 
@@ -253,7 +255,7 @@ PolishedLights refine_over_many(const ManyReceivers& many, const LightEstimates&
   while (move > near && refined.rounds < kDraftRounds) {
     const LightEstimates before = refined.lights;
     refine_once(many, others, kPathsPerSample / kDraft, refined);
-    come_to_rest(earlier, before, refined.lights);
+    come_to_rest(many.response.places(), earlier, before, refined.lights);
     move = largest_move(refined.lights, before);
     earlier = before;
   }

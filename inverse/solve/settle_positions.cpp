@@ -1,5 +1,7 @@
 #include "inverse/solve/settle_positions.h"
 
+#include <limits>
+
 #include "inverse/numerics/nelder_mead.h"
 #include "inverse/transport/eigen_vectors.h"
 
@@ -38,11 +40,21 @@ class Settling {
     return c;
   }
 
+  // At the nearest allowed place, if that is far enough from all others.
+  bool place(std::size_t moved, const Eigen::Vector3d& position, LightEstimates& lights) const {
+    const auto allowed = response_.places().nearest(position);
+    if (!allowed) return false;
+    lights[moved].position = *allowed;
+    std::vector<Eigen::Vector3d> positions;
+    for (const LightEstimate& light : lights) positions.push_back(light.position);
+    return response_.places().far_apart(positions);
+  }
+
   double error_with(std::size_t moved, const Eigen::Vector3d& position) {
     ++best_.evaluations;
-    columns_[moved] = column(moved, position);
     LightEstimates lights = best_.lights;
-    lights[moved].position = position;
+    if (!place(moved, position, lights)) return std::numeric_limits<double>::infinity();
+    columns_[moved] = column(moved, lights[moved].position);
     const double error = refit_intensities(observations_, columns_, lights);
     if (error < best_.error) best_.lights = std::move(lights), best_.error = error;
     return error;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/important_vertices.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
@@ -17,6 +18,7 @@
 #include "inverse/solve/refine_over_many.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/stage_clock.h"
+#include "inverse/solve/traced_light.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/error.h"
 
@@ -26,19 +28,13 @@ namespace {
 using renderer::Error;
 
 constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
-constexpr double kVerificationPaths = 2e7;        // spent on the fresh evaluation, if not asked otherwise
-constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
-constexpr std::size_t kHeldOut = 1500;   // receivers that tell how many lights there are
-constexpr int kFixedSamples = 512;       // per important vertex
-constexpr int kFixedSamplesOfMany = 32;  // per receiver of the last refinement …
-constexpr std::size_t kMany = 50000;     // … of so many at most
-constexpr double kExplained = 1.5;       // times the noise of the target, or less: more receivers hardly tell more
-constexpr double kNegligible = 1e-3;     // contribution to the target's norm
-constexpr double kOnSurface = 0.5;       // of a target's receivers must lie on the scene
-
-// Seeds of a solve's own path tracing differ from those that a target was traced with, whatever seed the user gave
-// both.
-std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t purpose) { return seed * 1000003 + 0x5eedf00dULL + purpose; }
+constexpr std::size_t kHeldOut = 1500;            // receivers that tell how many lights there are
+constexpr int kFixedSamples = 512;                // per important vertex
+constexpr int kFixedSamplesOfMany = 32;           // per receiver of the last refinement …
+constexpr std::size_t kMany = 50000;              // … of so many at most
+constexpr double kExplained = 1.5;    // times the noise of the target, or less: more receivers hardly tell more
+constexpr double kNegligible = 1e-3;  // contribution to the target's norm
+constexpr double kOnSurface = 0.5;    // of a target's receivers must lie on the scene
 
 void check_target(const SolveProblem& problem) {
   const double fraction = fraction_on_surface(problem.tracer, problem.target.receivers);
@@ -56,19 +52,9 @@ std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_
   return chosen;
 }
 
-bool has_fixed_light(const SolveProblem& problem) {
-  const auto& materials = problem.tracer.scene().materials;
-  return !problem.kept_lights.empty() ||
-         std::any_of(materials.begin(), materials.end(),
-                     [](const renderer::Material& m) { return max_component(m.emission) > 0; });
-}
-
-// What shines without the lights sought: emissive surfaces and kept lights.
-std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
-                                      int samples, const SolveOptions& options, const renderer::Control& control) {
-  if (!has_fixed_light(problem)) return std::vector<Vec3f>(at.size());
-  const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, 1), true};
-  return trace_illumination(problem.tracer, at, problem.kept_lights, trace, control).value;
+// Rules that speak of more than a light's place.
+bool ties_lights_together(const SolveProblem& problem) {
+  return problem.intensities.any() || problem.places.light_distance > 0;
 }
 
 std::vector<std::size_t> all_indices(std::size_t count) {
@@ -101,9 +87,10 @@ std::vector<FoundLight> found_lights(const LightResponse& response, const Observ
   const std::vector<LightInterval> intervals = light_intervals(response, observations, lights);
   std::vector<FoundLight> found;
   for (const std::size_t j : order) {
-    found.push_back({point_light(lights[j]), norm[j] / total, to_vec3f(intervals[j].position),
-                     to_vec3f(intervals[j].intensity.matrix())});
-    found.back().light.name = fmt::format("light{}", found.size());
+    renderer::PointLight light = point_light(lights[j]);
+    light.name = fmt::format("light{}", found.size() + 1);
+    found.push_back(
+        {light, norm[j] / total, to_vec3f(intervals[j].position), to_vec3f(intervals[j].intensity.matrix())});
   }
   return found;
 }
@@ -180,7 +167,7 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
   const auto samples = select(problem.target.receivers.samples, draw.chosen);
   const TransportCache direct = direct_transport(search.response.grid(), samples.size());
-  const LightResponse response(problem.tracer, samples, direct);
+  const LightResponse response(problem.tracer, samples, direct, search.response.places());
   Observations observations = observe_target(
       problem.target, draw, fixed_illumination(problem, samples, kFixedSamplesOfMany, search.options, search.control));
   if (!beside_surfaces.empty()) observations = with_capped_weights(observations);
@@ -200,11 +187,13 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const LightResponse& response = search.response;
   const int already = int(beside_surfaces.size());
   Observations remaining = less(search.searched, response, beside_surfaces);
+  remaining.rules = {};
   const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
                                options.max_lights - already};
   const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
   const LightEstimates start = joined(beside_surfaces, cut.lights);
+  remaining.rules = search.problem.intensities;
 
   const LightCountOptions count_options{options.max_lights - already, std::max(0, options.exact_lights - already),
                                         options.time_limit, &search.exact, search.held_out};
@@ -229,9 +218,9 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
   const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
-  const LightEstimates all = count.out_of_time || explained
-                                 ? joined(beside_surfaces, polished.lights)
-                                 : refined_over_many(search, polished.lights, beside_surfaces, clock);
+  const bool enough = count.out_of_time || explained || ties_lights_together(search.problem);
+  const LightEstimates all = enough ? joined(beside_surfaces, polished.lights)
+                                    : refined_over_many(search, polished.lights, beside_surfaces, clock);
   return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
@@ -239,27 +228,35 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
           error_curve};
 }
 
-int verification_samples(const SolveOptions& options, std::size_t receivers) {
-  if (options.verification_samples > 0) return options.verification_samples;
-  return std::clamp(int(kVerificationPaths / double(receivers)), kLeastVerificationSamples, kMostVerificationSamples);
-}
-
-void verify(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-            SolveResult& result) {
-  renderer::Lights lights = problem.kept_lights;
-  for (const FoundLight& found : result.lights) lights.emplace_back(found.light);
-  const Target& target = problem.target;
-  const renderer::TraceOptions trace{verification_samples(options, target.receivers.size()), problem.bake.bounces,
-                                     fresh_seed(options.seed, 2), true};
-  const auto traced = trace_illumination(problem.tracer, target.receivers.samples, lights, trace, control);
-  result.illumination = traced.value;
-  result.verification_noise = relative_standard_error(traced);
-  result.relative_l2 = relative_l2(traced.value, target.illumination, target.weight);
-}
-
 [[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {
   throw Error({problem.tracer.scene().path, "solve", "no light possible: " + why,
                "a target that lights inside the region can produce"});
+}
+
+AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid) {
+  std::vector<Eigen::Vector3d> stay;
+  for (const renderer::Light& light : problem.kept_lights) {
+    if (const auto* point = std::get_if<renderer::PointLight>(&light)) stay.push_back(to_eigen(point->position));
+    if (const auto* spot = std::get_if<renderer::SpotLight>(&light)) stay.push_back(to_eigen(spot->position));
+  }
+  return {problem.tracer.scene(), grid.region, problem.places, std::move(stay)};
+}
+
+[[noreturn]] void no_place(const SolveProblem& problem) {
+  throw Error({problem.tracer.scene().path, "solve",
+               fmt::format("no light possible: nowhere in the region is a place {} m from all surfaces",
+                           problem.places.surface_distance),
+               "a smaller distance to surfaces, or a larger region"});
+}
+
+// As many as asked for, where rules keep lights apart.
+void require_all_lights(const SolveProblem& problem, const SolveOptions& options, std::size_t found) {
+  const bool too_few = found == 0 || int(found) < options.exact_lights;
+  if (!too_few || !(problem.places.light_distance > 0)) return;
+  throw Error({problem.tracer.scene().path, "solve",
+               fmt::format("no light possible: {} lights {} m apart find no place", std::max(1, options.exact_lights),
+                           problem.places.light_distance),
+               "fewer lights, a smaller distance between them, or a larger region"});
 }
 
 }  // namespace
@@ -268,6 +265,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   StageClock clock;
   SolveResult result;
   check_target(problem);
+  if (!problem.lights_in_place.empty()) return fit_in_place(problem, options, control);
 
   const Importance importance = choose_important_vertices(
       problem.tracer, problem.target,
@@ -283,11 +281,13 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const Observations published = observe_target(problem.target, {importance.chosen, importance.probability}, fixed);
   if (!(published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  const LightResponse response(problem.tracer, samples, transport.cache);
+  const LightResponse response(problem.tracer, samples, transport.cache, allowed_places(problem, transport.cache.grid));
+  if (response.grid_lights_near_places().empty()) no_place(problem);
   clock.finish("fixed_illumination", {});
 
   const bool joint = options.method == SolveMethod::kJoint;
-  const Observations judged = joint ? standing_for_all(published) : published;
+  Observations judged = joint ? standing_for_all(published) : published;
+  judged.rules = problem.intensities;
   Observations searched = published;
   std::optional<ExactIndirect> exact;
   std::unique_ptr<HeldOut> held_out;
@@ -295,7 +295,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   if (joint) {
     exact.emplace(problem.tracer, samples, transport.cache.settings);
     clock.finish("exact_indirect", {});
-    beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
+    if (!ties_lights_together(problem)) {
+      beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
+    }
     searched = published.noise > 0 ? weighted_by_noise(published, transport.cache.indirect_relative_error)
                                    : with_capped_weights(published);
     result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
@@ -322,6 +324,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
             : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
+  require_all_lights(problem, options, optimum.lights.size());
   result.lights = found_lights(response, judged, optimum.lights);
   result.initial_relative_l2 = relative_error(judged, illumination_of(response, optimum.start));
   result.relative_l2_cached = relative_error(judged, illumination_of(response, optimum.lights));

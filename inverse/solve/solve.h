@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "inverse/solve/intensity_rules.h"
 #include "inverse/target/target.h"
+#include "inverse/transport/allowed_places.h"
 #include "inverse/transport/transport_cache.h"
 #include "renderer/core/control.h"
 #include "renderer/scene/light.h"
@@ -35,9 +37,9 @@ struct SolveOptions {
 };
 
 struct FoundLight {
-  renderer::PointLight light;
+  renderer::Light light;
   double contribution = 0;                      // ‖its illumination‖ / Σ over all found
-  Vec3f position_interval, intensity_interval;  // half widths of 90 % intervals: metres, candela
+  Vec3f position_interval, intensity_interval;  // half widths of 90 % intervals: metres, candela (or lux)
 };
 
 // The best set of its size that a solve came by.
@@ -74,9 +76,13 @@ struct SolveProblem {
   LightGridOptions grid;                            // for a bake here
   BakeSettings bake;                                // for a bake here; of a cache file: its materials must agree
   renderer::Lights kept_lights;                     // stay lit, untouched
+  PlaceRules places{};                              // where lights may stand; default: anywhere in the grid's region
+  IntensityRules intensities{};
+  renderer::Lights lights_in_place{};  // not none: these stay where they are, their intensities alone are sought
 };
 
-// Error for a target of another scene, a stale cache, or a target that no light can produce ("no light possible").
+// Error for a target of another scene, a stale cache, a target that no light can produce, or rules that no light can
+// keep to ("no light possible"). Rules are never broken. The published method knows none.
 SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control = {});
 
 }  // namespace chiaro::inverse

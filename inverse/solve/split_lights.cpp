@@ -39,15 +39,13 @@ struct Split {
 // Its halves take the light's correction with them.
 Split split_light(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
                   std::vector<Column> columns, const Column& weighted_residual, std::size_t split) {
-  const Box3f& region = response.grid().region;
-  const double diagonal = double(region.diagonal());
+  const double diagonal = double(response.grid().region.diagonal());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
       curvature(response, weighted_residual, lights[split], kDifference * diagonal));
   const auto half = [&](double side) {
     LightEstimate light = lights[split];
-    light.position = (light.position + side * kHalfWidth * diagonal * eigen.eigenvectors().col(0))
-                         .cwiseMax(to_eigen(region.min))
-                         .cwiseMin(to_eigen(region.max));
+    const Eigen::Vector3d beside = light.position + side * kHalfWidth * diagonal * eigen.eigenvectors().col(0);
+    light.position = response.places().nearest(beside).value_or(light.position);
     return light;
   };
   Split result{lights};

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include <Eigen/Geometry>
+#include "inverse/numerics/closest_point.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -21,38 +21,6 @@ constexpr double kFarAway = std::numeric_limits<double>::infinity();
 // Of double precision, so that no path of finite floats overflows.
 Vector3d wide(Vec3f v) { return {v.x, v.y, v.z}; }
 
-// Of the point of segment ab closest to p: its parameter, 0 at a and 1 at b.
-double closest_on_segment(const Vector3d& a, const Vector3d& b, const Vector3d& p) {
-  const double squared_length = (b - a).squaredNorm();
-  return squared_length > 0 ? std::clamp((p - a).dot(b - a) / squared_length, 0.0, 1.0) : 0.0;
-}
-
-using Corners = std::array<Vector3d, 3>;
-
-Vector3d closest_on_edges(const Corners& corners, const Vector3d& p) {
-  Vector3d closest = Vector3d::Zero();
-  double least = kFarAway;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    const double t = closest_on_segment(corners[i], corners[j], p);
-    const double distance = (corners[i] + t * (corners[j] - corners[i]) - p).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
-    closest = (1 - t) * Vector3d::Unit(i) + t * Vector3d::Unit(j);
-  }
-  return closest;
-}
-
-// Barycentric coordinates of the point of the triangle (or of the segment or point it has shrunk to) closest to p.
-Vector3d closest_on_triangle(const Corners& corners, const Vector3d& p) {
-  const Vector3d ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = p - corners[0];
-  const Vector3d normal = ab.cross(ac);
-  const double v = ap.cross(ac).dot(normal) / normal.squaredNorm();
-  const double w = ab.cross(ap).dot(normal) / normal.squaredNorm();
-  const bool above = v >= 0 && w >= 0 && v + w <= 1;  // false where the area, and so the normal, is zero
-  return above ? Vector3d(1 - v - w, v, w) : closest_on_edges(corners, p);
-}
-
 // Without triangles every receiver stands for itself.
 Triangle surface_triangle(const Receivers& receivers, std::uint32_t item) {
   return receivers.triangles.empty() ? Triangle{item, item, item} : receivers.triangles[item];
@@ -65,9 +33,10 @@ struct SurfacePoint {
 
 SurfacePoint closest_on_surface(const Receivers& receivers, std::uint32_t item, Vec3f point) {
   const Triangle triangle = surface_triangle(receivers, item);
-  const Corners corners{wide(receivers.positions[triangle[0]]), wide(receivers.positions[triangle[1]]),
-                        wide(receivers.positions[triangle[2]])};
-  const Vector3d weights = closest_on_triangle(corners, wide(point));
+  const numerics::TriangleCorners corners{wide(receivers.positions[triangle[0]]),
+                                          wide(receivers.positions[triangle[1]]),
+                                          wide(receivers.positions[triangle[2]])};
+  const Vector3d weights = numerics::closest_on_triangle(corners, wide(point));
   Vector3d position = Vector3d::Zero();
   Vec3f normal;
   for (int i = 0; i < 3; ++i) {
@@ -134,7 +103,7 @@ PathPoint closest_on_path(const Path& path, Vec3f point, double reach) {
   PathPoint closest;
   visit_near(path.segments, point, reach, [&](std::uint32_t segment) {
     const Vector3d a = wide(path.points[segment]), b = wide(path.points[path.end_of(segment)]);
-    const double t = closest_on_segment(a, b, wide(point));
+    const double t = numerics::closest_on_segment(a, b, wide(point));
     const double distance = (a + t * (b - a) - wide(point)).norm();
     if (distance < closest.distance || (distance == closest.distance && segment < closest.segment)) {
       closest = {distance, segment, t > 0.5};

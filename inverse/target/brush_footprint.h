@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "inverse/target/box_tree.h"
 #include "inverse/target/paint.h"
+#include "inverse/transport/box_tree.h"
 
 namespace chiaro::inverse {
 

@@ -134,12 +134,12 @@ void check_interruption(const renderer::Control& control) {
 // The coarsest regular grid of this median error.
 LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, const LightGridOptions& options,
                        const BakeSettings& settings, const renderer::Control& control) {
-  const Box3f region = make_light_grid(tracer, {.region = options.region}).region;
+  const Box3f region = make_light_grid(tracer, {.region = options.region, .parts = options.parts}).region;
   const auto positions = test.exact(random_light_positions(tracer, region, kPositions, settings.seed));
   double lights = kFirstLights, least = std::numeric_limits<double>::infinity();
   while (lights <= double(kMostGridLights)) {
     check_interruption(control);
-    LightGrid grid = make_light_grid(tracer, {.region = options.region, .lights = lights});
+    LightGrid grid = make_light_grid(tracer, {.region = options.region, .parts = options.parts, .lights = lights});
     const double error = median(test.errors(grid, pointers_to(test.rows_of(grid.positions)), positions));
     if (error <= options.error) return grid;
     least = std::min(least, error);

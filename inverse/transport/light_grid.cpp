@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -95,6 +96,15 @@ Vec3f node_position(const LightGrid& grid, std::size_t node) {
   return grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)};
 }
 
+// Whether the cell around a node has a part of the region in it; of no parts, it has.
+bool cell_touches(const LightGrid& grid, Vec3f node, const std::vector<Box3f>& parts) {
+  const Vec3f half = 0.5F * grid.spacing;
+  const auto touches = [&](const Box3f& part) {
+    return !Box3f{max(part.min, node - half), min(part.max, node + half)}.empty();
+  };
+  return parts.empty() || std::any_of(parts.begin(), parts.end(), touches);
+}
+
 bool looks_inside(const Probe& p) { return p.back_fraction >= kInsideFraction; }
 
 // Whether the sides of the scene's surfaces tell inside from outside. Where almost all of the scene looks like the
@@ -181,8 +191,10 @@ LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOpti
   const FreeSpace free_space(tracer);
   const float touching = kTouching * least_positive(grid.spacing);
   std::vector<char> free(nodes);
-  renderer::parallel_for(
-      nodes, [&](std::size_t i) { free[i] = free_space.contains(node_position(grid, i), touching) ? 1 : 0; });
+  renderer::parallel_for(nodes, [&](std::size_t i) {
+    const Vec3f position = node_position(grid, i);
+    free[i] = cell_touches(grid, position, options.parts) && free_space.contains(position, touching) ? 1 : 0;
+  });
   grid.light_of_node.assign(nodes, -1);
   for (std::size_t i = 0; i < nodes; ++i) {
     if (free[i] == 0) continue;

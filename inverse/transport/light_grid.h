@@ -52,6 +52,7 @@ void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells);
 struct LightGridOptions {
   std::array<int, 3> counts{};       // 0, 0, 0: from the region's shape, for about so many nodes:
   std::optional<Box3f> region = {};  // default: the scene's bounds, a little inside
+  std::vector<Box3f> parts = {};     // of the region, the only ones of interest; none: all of it
   double lights = 700;
   double error = 0;  // of interpolation, for choose_light_grid(); 0: whatever comes of the above
 };
@@ -70,7 +71,8 @@ class FreeSpace {
   bool sides_tell_;  // of the scene's surfaces, inside from outside
 };
 
-// Nodes inside solids, and those that touch a surface, are left out. Error where none is left ("no light possible").
+// Nodes inside solids, those that touch a surface, and those whose cells lie outside all parts, are left out. Error
+// where none is left ("no light possible").
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options);
 
 // Anywhere in the box, by the sampler's next three numbers.

@@ -16,6 +16,21 @@ void check_kind(const UnityLight& light, Evaluation evaluation, const GatherOper
   CHIARO_CHECK(gather != nullptr || evaluation != Evaluation::kExact);
 }
 
+std::vector<std::size_t> lights_near(const LightGrid& grid, const AllowedPlaces& places) {
+  std::vector<char> near(grid.positions.size(), 1);
+  const double reach = double(length(grid.spacing));
+  renderer::parallel_for(near.size(), [&](std::size_t j) {
+    const Vector3d position = to_eigen(grid.positions[j]);
+    const auto place = places.nearest(position);
+    near[j] = place && (*place - position).norm() <= reach ? 1 : 0;
+  });
+  std::vector<std::size_t> lights;
+  for (std::size_t j = 0; j < near.size(); ++j) {
+    if (near[j] != 0) lights.push_back(j);
+  }
+  return lights;
+}
+
 }  // namespace
 
 LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<SurfaceSample> receivers,
@@ -24,8 +39,17 @@ LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<Surf
       receivers_(std::move(receivers)),
       cache_(cache),
       interpolation_(tracer, cache.grid),
-      gather_(gather) {
+      gather_(gather),
+      places_(cache.grid.region),
+      near_places_(lights_near(cache.grid, places_)) {
   CHIARO_CHECK(cache.receiver_count == receivers_.size());
+}
+
+LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<SurfaceSample> receivers,
+                             const TransportCache& cache, AllowedPlaces places)
+    : LightResponse(tracer, std::move(receivers), cache) {
+  places_ = std::move(places);
+  near_places_ = lights_near(cache.grid, places_);
 }
 
 std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluation evaluation,

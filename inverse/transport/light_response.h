@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "inverse/transport/allowed_places.h"
 #include "inverse/transport/gather_operator.h"
 #include "inverse/transport/grid_interpolation.h"
 #include "inverse/transport/transport_cache.h"
@@ -34,9 +35,16 @@ class LightResponse {
   LightResponse(const renderer::RayTracer& tracer, std::vector<renderer::SurfaceSample> receivers,
                 const TransportCache& cache, const GatherOperator* gather = nullptr);
 
+  // The same for lights that may stand in some places of the grid's region, or near it.
+  LightResponse(const renderer::RayTracer& tracer, std::vector<renderer::SurfaceSample> receivers,
+                const TransportCache& cache, AllowedPlaces places);
+
   std::size_t receiver_count() const { return receivers_.size(); }
   const std::vector<renderer::SurfaceSample>& receivers() const { return receivers_; }
   const LightGrid& grid() const { return cache_.grid; }
+  const AllowedPlaces& places() const { return places_; }
+  // Those of the grid's lights that have an allowed place no farther than a cell's diagonal.
+  const std::vector<std::size_t>& grid_lights_near_places() const { return near_places_; }
 
   // Positions outside the grid's region take the indirect part of the nearest point of its border.
   Column evaluate(const UnityLight& light, Evaluation evaluation) const;
@@ -62,6 +70,8 @@ class LightResponse {
   const TransportCache& cache_;
   GridInterpolation interpolation_;
   const GatherOperator* gather_;
+  AllowedPlaces places_;
+  std::vector<std::size_t> near_places_;
 };
 
 }  // namespace chiaro::inverse

@@ -36,7 +36,7 @@ SolveOptions quick(SolveMethod method = SolveMethod::kJoint) {
 std::vector<Vector3d> positions_of(const SolveResult& result) {
   std::vector<Vector3d> positions;
   for (const FoundLight& found : result.lights) {
-    const Vec3f p = found.light.position;
+    const Vec3f p = std::get<renderer::PointLight>(found.light).position;
     positions.emplace_back(p.x, p.y, p.z);
   }
   return positions;
@@ -136,7 +136,7 @@ TEST(Solve, SaysWhatItFound) {
   for (std::size_t j = 0; j < 3; ++j) {
     contributions += result.lights[j].contribution;
     EXPECT_LE(result.lights[j].contribution, result.lights[j == 0 ? 0 : j - 1].contribution);
-    EXPECT_FALSE(result.lights[j].light.name.empty());
+    EXPECT_FALSE(name_of(result.lights[j].light).empty());
   }
   EXPECT_NEAR(contributions, 1, 1e-9);
   EXPECT_EQ(result.important_vertices, 300);

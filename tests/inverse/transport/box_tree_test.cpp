@@ -1,4 +1,4 @@
-#include "inverse/target/box_tree.h"
+#include "inverse/transport/box_tree.h"
 
 #include <algorithm>
 #include <random>

@@ -1,0 +1,36 @@
+#pragma once
+// What lights may be: options, and a file of them.
+
+#include <string>
+
+#include "cli/transport_options.h"
+#include "inverse/solve/light_constraints.h"
+#include "inverse/solve/solve.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace chiaro::cli {
+
+struct ConstraintOptions {
+  inverse::LightConstraints given;  // as options, but for regions, which bakes have, too
+  std::string file;
+};
+
+// --constraints and all that its file may hold, but for --region.
+void add_constraint_options(CLI::App& command, ConstraintOptions& options);
+
+// Options before the file's. UsageError where two of them exclude each other.
+inverse::LightConstraints choose_constraints(const ConstraintOptions& options, const GridOptions& grid);
+
+// UsageError where the method does not know them.
+void require_known_to(inverse::SolveMethod method, const inverse::LightConstraints& constraints);
+
+inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::LightConstraints& constraints);
+inverse::IntensityRules intensity_rules(const inverse::LightConstraints& constraints);
+
+// Boxes around all places of the rules; none: anywhere.
+std::vector<renderer::Box3f> boxes_around(const renderer::Scene& scene, const inverse::PlaceRules& rules);
+
+}  // namespace chiaro::cli

@@ -1,0 +1,140 @@
+#include "inverse/solve/fit_in_place.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/QR>
+
+#include "inverse/solve/observe_target.h"
+#include "inverse/solve/stage_clock.h"
+#include "inverse/solve/traced_light.h"
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr std::size_t kMany = 50000;  // receivers at most
+constexpr int kLeastSamples = 64;     // paths per receiver
+constexpr double kNinety = 1.645;     // standard deviations to either side
+
+Vec3f& intensity_of(renderer::PointLight& light) { return light.intensity; }
+Vec3f& intensity_of(renderer::SpotLight& light) { return light.intensity; }
+Vec3f& intensity_of(renderer::DirectionalLight& light) { return light.illuminance; }
+Vec3f& intensity_of(renderer::EnvironmentLight&) {
+  CHIARO_CHECK(false);
+  std::abort();
+}
+
+renderer::Light with_intensity(renderer::Light light, Vec3f intensity) {
+  std::visit([&](auto& l) { intensity_of(l) = intensity; }, light);
+  return light;
+}
+
+Vec3f intensity_of(renderer::Light light) {
+  return std::visit([](auto& l) { return intensity_of(l); }, light);
+}
+
+std::vector<renderer::SurfaceSample> samples_of(const Target& target, const ReceiverDraw& draw) {
+  std::vector<renderer::SurfaceSample> samples;
+  for (const std::size_t i : draw.chosen) samples.push_back(target.receivers.samples[i]);
+  return samples;
+}
+
+std::vector<Column> unity_columns(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
+                                  const SolveOptions& options, const renderer::Control& control) {
+  renderer::Lights unity;
+  for (const renderer::Light& light : problem.lights_in_place) unity.push_back(with_intensity(light, {1, 1, 1}));
+  const int paths = std::max(kLeastSamples, verification_samples(options, at.size()));
+  const renderer::TraceOptions trace{paths, problem.bake.bounces, fresh_seed(options.seed, 6), true};
+  std::vector<Column> columns;
+  for (const auto& traced : trace_illumination_per_light(problem.tracer, at, unity, trace, control)) {
+    Column& column = columns.emplace_back(Eigen::Index(traced.size()), 3);
+    for (std::size_t i = 0; i < traced.size(); ++i) column.row(Eigen::Index(i)) = to_eigen(traced[i]).transpose();
+  }
+  return columns;
+}
+
+// Half widths, by what the fit leaves at each receiver (sandwich estimate), as light_intervals().
+std::vector<Eigen::Array3d> intensity_intervals(const Observations& observations, const std::vector<Column>& columns,
+                                                const Column& residual) {
+  const auto n = Eigen::Index(columns.size());
+  std::vector<Eigen::Array3d> half(columns.size());
+  for (int c = 0; c < 3; ++c) {
+    Eigen::MatrixXd a(residual.rows(), n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      a.col(j) = observations.sqrt_weight.cwiseProduct(columns[std::size_t(j)].col(c));
+    }
+    const Eigen::MatrixXd inverse = (a.transpose() * a).completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd pull = observations.sqrt_weight.cwiseProduct(residual.col(c)).asDiagonal() * a;
+    const Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse;
+    for (Eigen::Index j = 0; j < n; ++j) half[std::size_t(j)][c] = kNinety * std::sqrt(std::max(0.0, covariance(j, j)));
+  }
+  return half;
+}
+
+double error_of(const Observations& observations, const std::vector<Column>& columns,
+                const std::vector<Eigen::Array3d>& intensity) {
+  Column sum = Column::Zero(observations.wanted.rows(), 3);
+  for (std::size_t j = 0; j < columns.size(); ++j) sum += columns[j] * intensity[j].matrix().asDiagonal();
+  return relative_error(observations, sum);
+}
+
+// In the order of the scene's lights.
+std::vector<FoundLight> lit(const renderer::Lights& lights, const Observations& observations,
+                            const std::vector<Column>& columns, const std::vector<Eigen::Array3d>& intensity) {
+  Column residual = -observations.wanted;
+  for (std::size_t j = 0; j < columns.size(); ++j) residual += columns[j] * intensity[j].matrix().asDiagonal();
+  const std::vector<Eigen::Array3d> half = intensity_intervals(observations, columns, residual);
+  std::vector<FoundLight> found;
+  double total = 0;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    FoundLight& light = found.emplace_back();
+    light.light = with_intensity(lights[j], to_vec3f(intensity[j].matrix()));
+    light.contribution = contribution_norm(observations, columns[j], intensity[j]);
+    light.intensity_interval = to_vec3f(half[j].matrix());
+    total += light.contribution;
+  }
+  for (FoundLight& light : found) light.contribution /= std::max(total, 1e-300);
+  return found;
+}
+
+}  // namespace
+
+SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
+  StageClock clock;
+  SolveResult result;
+  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const auto samples = samples_of(problem.target, draw);
+  const std::vector<Column> columns = unity_columns(problem, samples, options, control);
+  result.cache_seconds = clock.finish("traced_lights", {{"lights", double(columns.size())}});
+  Observations observations = observe_target(
+      problem.target, draw,
+      fixed_illumination(problem, samples, verification_samples(options, samples.size()), options, control));
+  observations.rules = problem.intensities;
+  clock.finish("fixed_illumination", {});
+  const IntensityFit fit = fit_intensities(observations, columns);
+  result.relative_l2_cached = error_of(observations, columns, fit.intensity);
+  result.optimal_seconds =
+      clock.finish("nnls", {{"relative_l2", result.relative_l2_cached}, {"kkt_residual", fit.kkt_residual}});
+  if (std::none_of(fit.intensity.begin(), fit.intensity.end(), [](const auto& l) { return (l > 0).any(); })) {
+    throw renderer::Error({problem.tracer.scene().path, "solve",
+                           "no light possible: none of the scene's lights brightens the painted surfaces",
+                           "a target that they can produce, or lights that may move"});
+  }
+  std::vector<Eigen::Array3d> before;
+  for (const renderer::Light& light : problem.lights_in_place) before.push_back(to_eigen(intensity_of(light)).array());
+  result.initial_relative_l2 = error_of(observations, columns, before);
+  result.lights = lit(problem.lights_in_place, observations, columns, fit.intensity);
+  result.target_noise = target_noise(problem.target);
+  result.important_vertices = int(samples.size());
+  result.termination = "all lights stay where they are";
+  verify(problem, options, control, result);
+  clock.finish("verification",
+               {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
+  result.stages = clock.stages();
+  result.total_seconds = clock.total();
+  return result;
+}
+
+}  // namespace chiaro::inverse

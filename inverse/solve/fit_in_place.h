@@ -1,0 +1,11 @@
+#pragma once
+
+#include "inverse/solve/solve.h"
+
+namespace chiaro::inverse {
+
+// The intensities of lights that stay where they are, of any kind that shines from somewhere, by least squares over
+// what each brings by path tracing: no bake is needed. Error where none of them reaches the painted surfaces.
+SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control);
+
+}  // namespace chiaro::inverse

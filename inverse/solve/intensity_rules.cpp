@@ -1,0 +1,243 @@
+// Where colours are ruled, intensities are strengths times colours, and both are fitted in turns.
+//
+//   l_jc = s_j k_jc,  max_c k_jc = 1;  cost = Σ_c ½ lᵀ G_c l − b_cᵀ l
+
+#include "inverse/solve/intensity_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "inverse/numerics/bounded_least_squares.h"
+#include "inverse/numerics/nnls.h"
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/blackbody.h"
+#include "renderer/core/control.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Channels = std::array<NormalEquations, 3>;
+using Eigen::Index;
+using Eigen::MatrixX3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr int kTurns = 60;
+constexpr double kSettled = 1e-9;  // relative change of the cost
+constexpr int kTemperatures = 12;  // tried over the range, before the best is refined …
+constexpr int kHalvings = 40;      // … by golden sections
+constexpr double kMired = 0.5;     // for the derivative of a colour
+
+// Intensities are given out as floats, and must not be above the limit then.
+double largest_float_up_to(double limit) {
+  const auto rounded = float(limit);
+  return double(double(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded);
+}
+
+MatrixX3d each_channel_by_itself(const Channels& channels, double upper, IntensityFit& fit) {
+  const Index n = channels[0].atb.size();
+  MatrixX3d intensity(n, 3);
+  std::array<double, 3> kkt{};
+  std::array<int, 3> iterations{};
+  renderer::parallel_for(3, [&](std::size_t c) {
+    if (std::isinf(upper)) {
+      const numerics::NnlsResult r = numerics::nnls(channels[c].gram, channels[c].atb);
+      intensity.col(Index(c)) = r.x, kkt[c] = r.kkt_residual, iterations[c] = r.iterations;
+    } else {
+      const auto r = numerics::bounded_least_squares(channels[c].gram, channels[c].atb, VectorXd::Constant(n, upper));
+      intensity.col(Index(c)) = r.x, kkt[c] = r.kkt_residual, iterations[c] = r.iterations;
+    }
+  });
+  fit.kkt_residual = *std::max_element(kkt.begin(), kkt.end());
+  fit.iterations = iterations[0] + iterations[1] + iterations[2];
+  return intensity;
+}
+
+double cost_of(const Channels& channels, const MatrixX3d& intensity) {
+  double cost = 0;
+  for (int c = 0; c < 3; ++c) {
+    const VectorXd l = intensity.col(c);
+    cost += 0.5 * l.dot(channels[std::size_t(c)].gram * l) - l.dot(channels[std::size_t(c)].atb);
+  }
+  return cost;
+}
+
+Vector3d color_at(double mired) { return to_eigen(renderer::blackbody_color(1e6 / mired)); }
+
+// Of the range, as far as this function's least value is found.
+template <class Cost>
+double best_mired(const std::array<double, 2>& kelvin, const Cost& cost) {
+  const double low = 1e6 / kelvin[1], high = 1e6 / kelvin[0], step = (high - low) / kTemperatures;
+  double best = low;
+  for (int k = 1; k <= kTemperatures; ++k) {
+    if (cost(low + k * step) < cost(best)) best = low + k * step;
+  }
+  double a = std::max(low, best - step), b = std::min(high, best + step);
+  constexpr double kGolden = 0.6180339887498949;
+  for (int k = 0; k < kHalvings && b - a > 1e-3; ++k) {
+    const double x = b - kGolden * (b - a), y = a + kGolden * (b - a);
+    (cost(x) < cost(y) ? b : a) = cost(x) < cost(y) ? y : x;
+  }
+  const double middle = (a + b) / 2;
+  return cost(middle) < cost(best) ? middle : best;
+}
+
+class RuledColors {
+ public:
+  RuledColors(const Channels& channels, const IntensityRules& rules)
+      : channels_(channels),
+        rules_(rules),
+        upper_(largest_float_up_to(rules.max_intensity)),
+        count_(channels[0].atb.size()),
+        strength_(VectorXd::Zero(count_)),
+        color_(MatrixX3d::Ones(count_, 3)),
+        mired_(VectorXd::Zero(count_)) {}
+
+  IntensityFit fit() {
+    IntensityFit result;
+    const MatrixX3d free = each_channel_by_itself(channels_, std::numeric_limits<double>::infinity(), result);
+    start_from(free);
+    double cost = std::numeric_limits<double>::infinity();
+    for (int turn = 0; turn < kTurns; ++turn) {
+      fit_strengths();
+      const double now = cost_of(channels_, intensity());
+      if (!(now < cost - kSettled * std::abs(now))) break;
+      cost = now;
+      fit_colors();
+    }
+    fit_strengths();
+    result.directions = directions();
+    const MatrixX3d found = intensity();
+    for (Index j = 0; j < count_; ++j) result.intensity.emplace_back(found.row(j).transpose().array());
+    return result;
+  }
+
+ private:
+  MatrixX3d intensity() const { return strength_.asDiagonal() * color_; }
+
+  void start_from(const MatrixX3d& free) {
+    if (rules_.one_color) return set_one_color(free.colwise().sum().transpose());
+    for (Index j = 0; j < count_; ++j) set_temperature(j, [&](const Vector3d& k) { return misfit(free.row(j), k); });
+  }
+
+  static double misfit(const Vector3d& wanted, const Vector3d& color) {
+    return (wanted - wanted.dot(color) / color.squaredNorm() * color).squaredNorm();
+  }
+
+  template <class Cost>
+  void set_temperature(Index light, const Cost& cost_of_color) {
+    mired_[light] = best_mired(*rules_.kelvin, [&](double mired) { return cost_of_color(color_at(mired)); });
+    color_.row(light) = color_at(mired_[light]).transpose();
+  }
+
+  void set_one_color(const Vector3d& wanted) {
+    if (rules_.kelvin) {
+      set_temperature(0, [&](const Vector3d& k) { return misfit(wanted, k); });
+    } else if (wanted.maxCoeff() > 0) {
+      color_.row(0) = (wanted / wanted.maxCoeff()).transpose();
+    }
+    for (Index j = 1; j < count_; ++j) color_.row(j) = color_.row(0), mired_[j] = mired_[0];
+  }
+
+  void fit_strengths() {
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count_, count_);
+    VectorXd atb = VectorXd::Zero(count_);
+    for (int c = 0; c < 3; ++c) {
+      const auto k = color_.col(c).asDiagonal();
+      gram += k * channels_[std::size_t(c)].gram * k;
+      atb += k * channels_[std::size_t(c)].atb;
+    }
+    strength_ = numerics::bounded_least_squares(gram, atb, VectorXd::Constant(count_, upper_)).x;
+  }
+
+  void fit_colors() {
+    if (rules_.one_color) return fit_one_color();
+    for (Index j = 0; j < count_; ++j) {
+      if (strength_[j] > 0) fit_temperature(j);
+    }
+  }
+
+  // The strengths being what they are, up to a common factor.
+  void fit_one_color() {
+    Vector3d along, squared;
+    for (int c = 0; c < 3; ++c) {
+      along[c] = strength_.dot(channels_[std::size_t(c)].atb);
+      squared[c] = strength_.dot(channels_[std::size_t(c)].gram * strength_);
+    }
+    if (rules_.kelvin) {
+      set_temperature(0, [&](const Vector3d& k) { return cost_along(k, along, squared); });
+      for (Index j = 1; j < count_; ++j) color_.row(j) = color_.row(0), mired_[j] = mired_[0];
+    } else {
+      set_one_color(along.cwiseMax(0).cwiseQuotient(squared.cwiseMax(1e-300)));
+    }
+  }
+
+  // Of the best strength of this colour.
+  static double cost_along(const Vector3d& color, const Vector3d& along, const Vector3d& squared) {
+    const double gain = std::max(0.0, color.dot(along));
+    return -gain * gain / std::max(color.cwiseAbs2().dot(squared), 1e-300);
+  }
+
+  // With the light's strength, all others being what they are.
+  void fit_temperature(Index light) {
+    const MatrixX3d all = intensity();
+    Vector3d along, squared;
+    for (int c = 0; c < 3; ++c) {
+      const NormalEquations& channel = channels_[std::size_t(c)];
+      squared[c] = channel.gram(light, light);
+      along[c] = channel.atb[light] - channel.gram.row(light).dot(all.col(c)) + squared[c] * all(light, c);
+    }
+    set_temperature(light, [&](const Vector3d& k) { return cost_along(k, along, squared); });
+    const Vector3d k = color_.row(light);
+    strength_[light] = std::clamp(k.dot(along) / std::max(k.cwiseAbs2().dot(squared), 1e-300), 0.0, upper_);
+  }
+
+  bool temperature_is_free(Index light) const {
+    return mired_[light] - kMired > 1e6 / (*rules_.kelvin)[1] && mired_[light] + kMired < 1e6 / (*rules_.kelvin)[0];
+  }
+
+  Eigen::RowVector3d by_mired(Index light) const {
+    return strength_[light] * (color_at(mired_[light] + kMired) - color_at(mired_[light] - kMired)).transpose() /
+           (2 * kMired);
+  }
+
+  std::vector<MatrixX3d> directions() const {
+    std::vector<MatrixX3d> ways;
+    const auto add = [&](Index light, const Eigen::RowVector3d& change) {
+      ways.emplace_back(MatrixX3d::Zero(count_, 3)).row(light) = change;
+    };
+    for (Index j = 0; j < count_; ++j) {
+      if (strength_[j] > 0 && strength_[j] < upper_) add(j, color_.row(j));
+      const bool warmer = rules_.kelvin && !rules_.one_color && strength_[j] > 0 && temperature_is_free(j);
+      if (warmer) add(j, by_mired(j));
+    }
+    if (!rules_.one_color) return ways;
+    if (rules_.kelvin && temperature_is_free(0)) {
+      MatrixX3d& all = ways.emplace_back(MatrixX3d::Zero(count_, 3));
+      for (Index j = 0; j < count_; ++j) all.row(j) = by_mired(j);
+    }
+    for (int c = 0; c < 3 && !rules_.kelvin; ++c) ways.emplace_back(MatrixX3d::Zero(count_, 3)).col(c) = strength_;
+    return ways;
+  }
+
+  const Channels& channels_;
+  const IntensityRules& rules_;
+  double upper_;
+  Index count_;
+  VectorXd strength_;  // candela
+  MatrixX3d color_;
+  VectorXd mired_;
+};
+
+}  // namespace
+
+IntensityFit fit_intensities(const Channels& channels, const IntensityRules& rules) {
+  if (channels[0].atb.size() == 0) return {};
+  if (rules.color_is_ruled()) return RuledColors(channels, rules).fit();
+  IntensityFit fit;
+  const MatrixX3d found = each_channel_by_itself(channels, largest_float_up_to(rules.max_intensity), fit);
+  for (Index j = 0; j < found.rows(); ++j) fit.intensity.emplace_back(found.row(j).transpose().array());
+  return fit;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,184 @@
+// Projections onto one rule after the other until all hold (alternating projections): Bauschke, Borwein, On projection
+// algorithms for solving convex feasibility problems, 1996. The rules are not convex, so a place is checked before it
+// is given out.
+
+#include "inverse/transport/allowed_places.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Eigen::Vector3d;
+using renderer::Box3f;
+using renderer::Vec3f;
+
+constexpr int kRounds = 40;
+constexpr double kFarther = 1e-5;    // in parts of a distance: what is pushed away ends clearly beyond it
+constexpr double kHanging = 1e-3;    // in parts of the clearance, or …
+constexpr double kHangingAt = 1e-4;  // … metres: it is kept
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+Vector3d clamped(const Vector3d& position, const Box3f& box) {
+  return position.cwiseMax(to_eigen(box.min)).cwiseMin(to_eigen(box.max));
+}
+
+Box3f intersection(const Box3f& a, const Box3f& b) { return {max(a.min, b.min), min(a.max, b.max)}; }
+
+// As positions are given out.
+Vector3d as_float(const Vector3d& position) { return to_eigen(to_vec3f(position)); }
+
+double tolerance(double clearance) { return std::max(kHanging * clearance, kHangingAt); }
+
+// Unit; any where there is none.
+Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& otherwise) {
+  const double length = (to - from).norm();
+  return length > 0 ? Vector3d((to - from) / length) : otherwise;
+}
+
+void check_clearance(const renderer::Scene& scene, const Mount& mount, double surface_distance) {
+  if (mount.clearance >= surface_distance) return;
+  throw renderer::Error(
+      {scene.path, "surface to hang lights on",
+       fmt::format("no light possible: lights are to hang {} m from \"{}\", and no nearer than {} m to any surface",
+                   mount.clearance, mount.node, surface_distance),
+       "a distance to surfaces no larger than the clearance"});
+}
+
+NearestSurface surface_of(const renderer::Scene& scene, const Mount& mount) {
+  NearestSurface surface(scene, mount.node);
+  if (!surface.empty()) return surface;
+  throw renderer::Error({scene.path, "surface to hang lights on",
+                         fmt::format("no node with a mesh is named \"{}\"", mount.node), "a node's name"});
+}
+
+}  // namespace
+
+Box3f bounds_of(const renderer::Scene& scene, const Mount& mount) {
+  const Box3f surface = surface_of(scene, mount).bounds();
+  const auto clearance = float(mount.clearance);
+  const Vec3f room{clearance, clearance, clearance};
+  return {surface.min - room, surface.max + room};
+}
+
+AllowedPlaces::AllowedPlaces(const Box3f& region) : boxes_{region} {}
+
+AllowedPlaces::AllowedPlaces(const renderer::Scene& scene, const Box3f& region, const PlaceRules& rules,
+                             std::vector<Vector3d> lights_that_stay)
+    : rules_(rules), stay_(std::move(lights_that_stay)) {
+  for (const Box3f& box : rules.boxes) {
+    if (const Box3f inside = intersection(box, region); !inside.empty()) boxes_.push_back(inside);
+  }
+  for (const Mount& mount : rules.mounts) {
+    check_clearance(scene, mount, rules.surface_distance);
+    mounts_.push_back(std::make_shared<MountedSurface>(MountedSurface{surface_of(scene, mount), mount.clearance}));
+  }
+  const bool anywhere = rules.boxes.empty() && rules.mounts.empty();
+  if (anywhere) boxes_.push_back(region);
+  if (boxes_.empty() && mounts_.empty()) {
+    throw renderer::Error({scene.path, "region", "no light possible: lies outside the grid of lights",
+                           "a region that the transport was baked for"});
+  }
+  if (rules.surface_distance > 0) surfaces_ = std::make_shared<NearestSurface>(scene);
+}
+
+bool AllowedPlaces::clear_of_surfaces(const Vector3d& position) const {
+  return !surfaces_ || !surfaces_->find(position, std::nextafter(rules_.surface_distance, 0));
+}
+
+// One step, away from the nearest.
+Vector3d AllowedPlaces::away_from_surfaces(const Vector3d& position) const {
+  const double distance = rules_.surface_distance * (1 + kFarther);
+  const auto near = surfaces_ ? surfaces_->find(position, distance) : std::nullopt;
+  if (!near) return position;
+  return near->point + distance * direction(near->point, position, near->normal);
+}
+
+Vector3d AllowedPlaces::in_front_of(const MountedSurface& mount, const Vector3d& position) const {
+  const auto near = mount.surface.find(position, kAnywhere);
+  Vector3d outwards = direction(near->point, position, near->normal);
+  if (!near->double_sided && outwards.dot(near->normal) < 0) outwards = near->normal;
+  return near->point + mount.clearance * outwards;
+}
+
+bool AllowedPlaces::hangs_on(const MountedSurface& mount, const Vector3d& position) const {
+  const auto near = mount.surface.find(position, kAnywhere);
+  const bool in_front = near->double_sided || (position - near->point).dot(near->normal) >= 0;
+  return in_front && std::abs(near->distance - mount.clearance) <= tolerance(mount.clearance);
+}
+
+bool AllowedPlaces::contains(const Vector3d& position) const {
+  const bool in_box =
+      std::any_of(boxes_.begin(), boxes_.end(), [&](const Box3f& box) { return box.contains(to_vec3f(position)); });
+  const bool mounted =
+      std::any_of(mounts_.begin(), mounts_.end(), [&](const auto& mount) { return hangs_on(*mount, position); });
+  return (in_box || mounted) && clear_of_surfaces(position);
+}
+
+std::optional<Vector3d> AllowedPlaces::nearest(const Vector3d& position) const {
+  std::optional<Vector3d> best;
+  const auto settle_by = [&](const auto& project) {
+    Vector3d p = project(position);
+    for (int round = 0; round < kRounds && !contains(as_float(p)); ++round) p = project(away_from_surfaces(p));
+    p = surfaces_ || !mounts_.empty() ? as_float(p) : p;
+    const bool nearer = !best || (p - position).norm() < (*best - position).norm();
+    if (nearer && contains(p)) best = p;
+  };
+  for (const Box3f& box : boxes_) settle_by([&](const Vector3d& p) { return clamped(p, box); });
+  for (const auto& mount : mounts_) settle_by([&](const Vector3d& p) { return in_front_of(*mount, p); });
+  return best;
+}
+
+bool AllowedPlaces::far_apart(const std::vector<Vector3d>& positions) const {
+  for (std::size_t j = 0; rules_.light_distance > 0 && j < positions.size(); ++j) {
+    const Vector3d here = as_float(positions[j]);
+    const auto near = [&](const Vector3d& p) { return (as_float(p) - here).norm() < rules_.light_distance; };
+    if (std::any_of(stay_.begin(), stay_.end(), near)) return false;
+    if (std::any_of(positions.begin(), positions.begin() + std::ptrdiff_t(j), near)) return false;
+  }
+  return true;
+}
+
+// One step for each pair that is too close.
+void AllowedPlaces::push_apart(std::vector<Vector3d>& positions) const {
+  const double wanted = rules_.light_distance * (1 + kFarther);
+  const Vector3d otherwise = Vector3d(1, 2, 3).normalized();
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    for (const Vector3d& fixed : stay_) {
+      const double lack = wanted - (positions[j] - fixed).norm();
+      if (lack > 0) positions[j] += lack * direction(fixed, positions[j], otherwise);
+    }
+    for (std::size_t k = 0; k < j; ++k) {
+      const double lack = wanted - (positions[j] - positions[k]).norm();
+      if (lack <= 0) continue;
+      const Vector3d apart = direction(positions[k], positions[j], otherwise);
+      positions[j] += lack / 2 * apart;
+      positions[k] -= lack / 2 * apart;
+    }
+  }
+}
+
+bool AllowedPlaces::settle(std::vector<Vector3d>& positions) const {
+  const auto place = [&] {
+    for (Vector3d& position : positions) {
+      const auto found = nearest(position);
+      if (!found) return false;
+      position = *found;
+    }
+    return true;
+  };
+  if (!place()) return false;
+  for (int round = 0; round < kRounds && !far_apart(positions); ++round) {
+    push_apart(positions);
+    if (!place()) return false;
+  }
+  return far_apart(positions);
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,66 @@
+#pragma once
+// Where a user lets lights stand.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "inverse/transport/nearest_surface.h"
+
+namespace chiaro::inverse {
+
+// Lights hang in front of this node's surfaces.
+struct Mount {
+  std::string node;
+  double clearance = 0;  // metres, from its surfaces
+};
+
+struct PlaceRules {
+  std::vector<renderer::Box3f> boxes{};  // lights stand in one of them, or hang on one …
+  std::vector<Mount> mounts{};           // … of these; neither given: anywhere
+  double surface_distance = 0;           // metres, from every surface, at least
+  double light_distance = 0;             // metres, between any two lights, at least
+};
+
+// Of all places in front of it. Error for a node that is not there.
+renderer::Box3f bounds_of(const renderer::Scene& scene, const Mount& mount);
+
+class AllowedPlaces {
+ public:
+  // Anywhere in the region.
+  explicit AllowedPlaces(const renderer::Box3f& region);
+  // Boxes count as far as they lie in the region. Error for a node that is not there or has no surface, and for boxes
+  // outside the region. Lights that stay are kept away from by the rules' distance, too.
+  AllowedPlaces(const renderer::Scene& scene, const renderer::Box3f& region, const PlaceRules& rules,
+                std::vector<Eigen::Vector3d> lights_that_stay = {});
+
+  // The nearest place of one light, as far as it is found: an allowed one in any case.
+  std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& position) const;
+  bool contains(const Eigen::Vector3d& position) const;
+  // No two lights too close to each other, nor to those that stay.
+  bool far_apart(const std::vector<Eigen::Vector3d>& positions) const;
+  // Moves all of them to allowed places, far apart. Says whether it could; if not they are left anywhere.
+  bool settle(std::vector<Eigen::Vector3d>& positions) const;
+
+ private:
+  struct MountedSurface {
+    NearestSurface surface;
+    double clearance = 0;
+  };
+  Eigen::Vector3d in_front_of(const MountedSurface& mount, const Eigen::Vector3d& position) const;
+  bool hangs_on(const MountedSurface& mount, const Eigen::Vector3d& position) const;
+  bool clear_of_surfaces(const Eigen::Vector3d& position) const;
+  Eigen::Vector3d away_from_surfaces(const Eigen::Vector3d& position) const;
+  void push_apart(std::vector<Eigen::Vector3d>& positions) const;
+
+  PlaceRules rules_;
+  std::vector<renderer::Box3f> boxes_;
+  std::vector<std::shared_ptr<const MountedSurface>> mounts_;
+  std::shared_ptr<const NearestSurface> surfaces_;  // absent: they may be near
+  std::vector<Eigen::Vector3d> stay_;
+};
+
+}  // namespace chiaro::inverse

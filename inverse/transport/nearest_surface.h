@@ -1,0 +1,44 @@
+#pragma once
+// How far surfaces are from anywhere, and where the nearest is.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "inverse/transport/box_tree.h"
+#include "renderer/scene/scene.h"
+
+namespace chiaro::inverse {
+
+struct NearestPoint {
+  Eigen::Vector3d point;   // on the surface, metres
+  Eigen::Vector3d normal;  // unit, on the side of the triangle's winding; zero for a triangle without area
+  double distance = 0;     // metres
+  bool double_sided = false;
+};
+
+class NearestSurface {
+ public:
+  // All drawn surfaces of the scene, or those of the node's instances. Keeps a reference to the scene.
+  explicit NearestSurface(const renderer::Scene& scene, const std::optional<std::string>& node = {});
+
+  bool empty() const { return triangles_.empty(); }
+  const renderer::Box3f& bounds() const { return bounds_; }
+  // None where all surfaces are farther than `reach` (metres).
+  std::optional<NearestPoint> find(const Eigen::Vector3d& position, double reach) const;
+
+ private:
+  struct WorldTriangle {
+    std::array<renderer::Vec3f, 3> corners;
+    bool double_sided = false;
+  };
+  NearestPoint nearest_on(const WorldTriangle& triangle, const Eigen::Vector3d& position) const;
+
+  std::vector<WorldTriangle> triangles_;
+  renderer::Box3f bounds_;
+  BoxTree tree_;
+};
+
+}  // namespace chiaro::inverse

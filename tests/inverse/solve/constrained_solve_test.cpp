@@ -1,0 +1,157 @@
+// Whole solves whose lights must keep to rules.
+
+#include <gtest/gtest.h>
+
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/blackbody.h"
+#include "renderer/core/error.h"
+#include "tests/inverse/solve/painted_corner.h"
+#include "tests/support/distance_to_surfaces.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using tests::bake_settings;
+using tests::known_lights;
+using tests::PaintedCorner;
+
+class ConstrainedSolve : public testing::Test {
+ protected:
+  SolveProblem problem(const Target& target) const {
+    SolveProblem problem{corner_.tracer(), target, {}, {}, bake_settings(0), {}};
+    problem.grid.counts = {7, 6, 7};
+    return problem;
+  }
+  static SolveOptions options(int exact_lights = 0) {
+    SolveOptions options;
+    options.important_vertices = 200;
+    options.verification_samples = 16;
+    options.exact_lights = exact_lights;
+    options.max_lights = 4;
+    return options;
+  }
+
+  const PaintedCorner corner_;
+  const Target target_ = corner_.target(known_lights(3), 0);
+};
+
+std::vector<renderer::PointLight> lights_of(const SolveResult& result) {
+  std::vector<renderer::PointLight> lights;
+  for (const FoundLight& found : result.lights) lights.push_back(std::get<renderer::PointLight>(found.light));
+  return lights;
+}
+
+TEST_F(ConstrainedSolve, LightsKeepTheirDistances) {
+  SolveProblem ruled = problem(target_);
+  ruled.places = {.surface_distance = 0.9, .light_distance = 1.5};
+  const auto lights = lights_of(solve(ruled, options(3)));
+  ASSERT_EQ(lights.size(), 3U);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    EXPECT_GE(test::distance_to_surfaces(corner_.scene(), to_eigen(lights[i].position)), 0.9 - 1e-6);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(length(lights[i].position - lights[j].position), 1.5F);
+  }
+}
+
+TEST_F(ConstrainedSolve, LightsStandInOneOfSeveralBoxes) {
+  SolveProblem ruled = problem(target_);
+  ruled.places.boxes = {{{0.2F, 2, 0.2F}, {1, 2.5F, 3}}, {{2.6F, 1, 2}, {3.6F, 2.6F, 3.5F}}};
+  const auto lights = lights_of(solve(ruled, options()));
+  ASSERT_FALSE(lights.empty());
+  for (const auto& light : lights) {
+    EXPECT_TRUE(ruled.places.boxes[0].contains(light.position) || ruled.places.boxes[1].contains(light.position));
+  }
+}
+
+TEST_F(ConstrainedSolve, NoChannelIsBrighterThanAllowed) {
+  SolveProblem ruled = problem(target_);
+  ruled.intensities.max_intensity = 4.1;
+  const auto lights = lights_of(solve(ruled, options()));
+  ASSERT_FALSE(lights.empty());
+  for (const auto& light : lights) EXPECT_LE(double(max_component(light.intensity)), 4.1);
+}
+
+TEST_F(ConstrainedSolve, AllHaveOneColor) {
+  SolveProblem ruled = problem(target_);
+  ruled.intensities.one_color = true;
+  const auto lights = lights_of(solve(ruled, options(3)));
+  ASSERT_EQ(lights.size(), 3U);
+  const auto color = [](const renderer::PointLight& l) { return l.intensity / max_component(l.intensity); };
+  for (const auto& light : lights) EXPECT_LT(length(color(light) - color(lights[0])), 1e-5F);
+}
+
+// Lights that are black bodies, so that the rule does not stand in the way of the truth.
+TEST_F(ConstrainedSolve, FindsBlackBodies) {
+  LightEstimates known = known_lights(2);
+  known[0].intensity = 8 * to_eigen(renderer::blackbody_color(3000)).array();
+  known[1].intensity = 6 * to_eigen(renderer::blackbody_color(6000)).array();
+  const Target target = corner_.target(known, 0);
+  SolveProblem ruled = problem(target);
+  ruled.intensities.kelvin = {2500, 7000};
+  const SolveResult result = solve(ruled, options(2));
+  const auto lights = lights_of(result);
+  ASSERT_EQ(lights.size(), 2U);
+  EXPECT_LT(result.relative_l2, 0.01);
+  for (const auto& light : lights) {
+    const bool first = (to_eigen(light.position) - known[0].position).norm() < 0.5;
+    const Eigen::Vector3d wanted = known[first ? 0 : 1].intensity.matrix();
+    EXPECT_LT((to_eigen(light.intensity) - wanted).norm(), 0.02 * wanted.norm());
+  }
+}
+
+// The wanted lights are bluer than allowed: the bluest allowed is taken.
+TEST_F(ConstrainedSolve, TemperaturesStayInTheirRange) {
+  LightEstimates known = known_lights(1);
+  known[0].intensity = 8 * to_eigen(renderer::blackbody_color(9000)).array();
+  const Target target = corner_.target(known, 0);
+  SolveProblem ruled = problem(target);
+  ruled.intensities.kelvin = {2700, 4000};
+  const auto lights = lights_of(solve(ruled, options(1)));
+  ASSERT_EQ(lights.size(), 1U);
+  const Vec3f color = lights[0].intensity / max_component(lights[0].intensity);
+  EXPECT_LT(length(color - renderer::blackbody_color(4000)), 1e-3F);
+}
+
+TEST_F(ConstrainedSolve, LightsInPlaceGetTheirIntensitiesBack) {
+  renderer::SpotLight spot;
+  spot.name = "Spot";
+  spot.position = {1.0F, 2.5F, 1.0F};
+  spot.direction = normalize(Vec3f{0.3F, -1, 0.2F});
+  spot.outer_cone_angle = 0.9F;
+  spot.intensity = {3, 6, 9};
+  renderer::PointLight point{"Point", {3, 2, 3}, {5, 4, 2}};
+  const renderer::TraceOptions trace{.samples = 256, .bounces = -1, .seed = 99};
+  const auto lit = trace_illumination(corner_.tracer(), corner_.receivers().samples, {spot, point}, trace);
+  const Target target{corner_.receivers(), lit.value, std::vector<float>(lit.value.size(), 1.0F), {}};
+  SolveProblem in_place = problem(target);
+  in_place.bake.bounces = -1;
+  spot.intensity = point.intensity = {1, 1, 1};
+  in_place.lights_in_place = {spot, point};
+  const SolveResult result = solve(in_place, options());
+  ASSERT_EQ(result.lights.size(), 2U);
+  const auto& found = std::get<renderer::SpotLight>(result.lights[0].light);
+  EXPECT_EQ(found.position, spot.position);
+  EXPECT_LT(length(found.intensity - Vec3f{3, 6, 9}), 0.1F);
+  EXPECT_LT(length(std::get<renderer::PointLight>(result.lights[1].light).intensity - Vec3f{5, 4, 2}), 0.1F);
+  for (int c = 0; c < 3; ++c) EXPECT_GT(result.lights[0].intensity_interval[c], 0.0F);
+}
+
+TEST_F(ConstrainedSolve, WhatNoLightCanKeepToIsNamed) {
+  const auto error_of = [&](const SolveProblem& ruled, const SolveOptions& how) -> std::string {
+    try {
+      solve(ruled, how);
+    } catch (const renderer::Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  SolveProblem ruled = problem(target_);
+  ruled.places.surface_distance = 50;
+  EXPECT_NE(error_of(ruled, options()).find("nowhere in the region is a place 50 m from all surfaces"),
+            std::string::npos);
+  ruled.places = {.light_distance = 5};
+  EXPECT_NE(error_of(ruled, options(3)).find("3 lights 5 m apart find no place"), std::string::npos)
+      << error_of(ruled, options(3));
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

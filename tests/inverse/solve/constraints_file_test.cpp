@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include "inverse/solve/light_constraints.h"
+#include "renderer/core/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chiaro::inverse {
+namespace {
+
+LightConstraints load_text(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return load_constraints(folder.write("constraints.json", text));
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    load_text(text);
+  } catch (const renderer::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ConstraintsFile, ReadsEveryField) {
+  const LightConstraints c = load_text(R"({"lights":3,"max_lights":5,
+      "regions":["Room",[0,1,2,3.5,4,5],{"on":"Ceiling","clearance":0.25},{"on":"Wall"}],
+      "surface_distance":0.125,"light_distance":0.5,"max_intensity":800,"kelvin":[2700,6500],
+      "one_color":true,"keep_lights":true,"keep_positions":false})");
+  EXPECT_EQ(c.lights, 3);
+  EXPECT_EQ(c.max_lights, 5);
+  EXPECT_EQ(c.regions, (std::vector<std::string>{"Room", "0,1,2,3.5,4,5"}));
+  ASSERT_EQ(c.mounts.size(), 2U);
+  EXPECT_EQ(c.mounts[0].node, "Ceiling");
+  EXPECT_EQ(c.mounts[0].clearance, 0.25);
+  EXPECT_EQ(c.mounts[1].clearance, 0);
+  EXPECT_EQ(c.surface_distance, 0.125);
+  EXPECT_EQ(c.light_distance, 0.5);
+  EXPECT_EQ(c.max_intensity, 800);
+  EXPECT_EQ(c.kelvin, (std::array<double, 2>{2700, 6500}));
+  EXPECT_TRUE(c.one_color);
+  EXPECT_TRUE(c.keep_lights);
+  EXPECT_FALSE(c.keep_positions);
+}
+
+TEST(ConstraintsFile, FaultsAreNamedByPlace) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"[]", "an object"},
+      {R"({"light":3})", "unknown key \"light\""},
+      {R"({"lights":0})", "lights"},
+      {R"({"lights":2.5})", "a whole number"},
+      {R"({"regions":[]})", "regions"},
+      {R"({"regions":[[1,2,3]]})", "regions[0]"},
+      {R"({"regions":[{"clearance":1}]})", "has no \"on\""},
+      {R"({"regions":[{"on":"A","clearance":-1}]})", "regions[0].clearance"},
+      {R"({"surface_distance":-1})", "surface_distance"},
+      {R"({"kelvin":[6500,2700]})", "the first is higher"},
+      {R"({"kelvin":[10,2700]})", "kelvin[0]"},
+      {R"({"max_intensity":0})", "max_intensity"},
+      {R"({"one_color":1})", "true or false"},
+      {"{", "parse error"},
+  };
+  for (const auto& [text, part] : faults) EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
+}
+
+TEST(ConstraintsFile, OptionsComeFirst) {
+  LightConstraints options, file;
+  options.max_lights = 2;
+  options.regions = {"Here"};
+  file.max_lights = 7;
+  file.light_distance = 1;
+  file.regions = {"There"};
+  file.mounts = {{"Ceiling", 0.1}};
+  file.one_color = true;
+  const LightConstraints both = merged(options, file);
+  EXPECT_EQ(both.max_lights, 2);
+  EXPECT_EQ(both.light_distance, 1);
+  EXPECT_EQ(both.regions, (std::vector<std::string>{"Here"}));
+  EXPECT_TRUE(both.mounts.empty());
+  EXPECT_TRUE(both.one_color);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse

@@ -1,0 +1,103 @@
+#include "inverse/transport/allowed_places.h"
+
+#include <gtest/gtest.h>
+
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/error.h"
+#include "renderer/core/sampler.h"
+#include "renderer/trace/ray_tracer.h"
+#include "tests/support/code_scenes.h"
+#include "tests/support/distance_to_surfaces.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Eigen::Vector3d;
+using renderer::Box3f;
+using renderer::Vec3f;
+using test::distance_to_surfaces;
+
+class Places : public testing::Test {
+ protected:
+  // Anywhere in the scene, and around it.
+  Vector3d random_position(std::uint32_t k) const {
+    renderer::Sampler sampler(5, 0, k);
+    const renderer::Vec2f xy = sampler.next_2d();
+    const Vec3f part{1.4F * xy.x - 0.2F, 1.4F * xy.y - 0.2F, 1.4F * sampler.next_1d() - 0.2F};
+    return to_eigen(bounds_.min + part * bounds_.extent());
+  }
+
+  const renderer::Scene scene_ = test::corner_with_ball();
+  const Box3f bounds_ = renderer::RayTracer(scene_).bounds();
+};
+
+TEST_F(Places, OfBoxesAreTheNearestInAny) {
+  const Box3f a{{0.5F, 0.5F, 0.5F}, {1, 1, 1}}, b{{2, 2, 2}, {3, 2.5F, 3}};
+  const AllowedPlaces places(scene_, bounds_, {.boxes = {a, b}});
+  EXPECT_EQ(*places.nearest({0, 0.7, 2}), Vector3d(0.5, 0.7, 1));
+  EXPECT_EQ(*places.nearest({2.5, 2.6, 4}), Vector3d(2.5, 2.5, 3));
+  EXPECT_TRUE(places.contains({0.75, 0.75, 0.75}));
+  EXPECT_FALSE(places.contains({1.5, 1.5, 1.5}));
+}
+
+TEST_F(Places, KeepTheirDistanceFromSurfaces) {
+  const double distance = 0.4;
+  const AllowedPlaces places(scene_, bounds_, {.surface_distance = distance});
+  int moved = 0;
+  for (std::uint32_t k = 0; k < 500; ++k) {
+    const Vector3d anywhere = random_position(k);
+    const auto place = places.nearest(anywhere);
+    ASSERT_TRUE(place) << k;
+    EXPECT_GE(distance_to_surfaces(scene_, *place), distance * (1 - 1e-6)) << k;
+    EXPECT_TRUE(bounds_.contains(to_vec3f(*place))) << k;
+    if (distance_to_surfaces(scene_, anywhere) >= distance && bounds_.contains(to_vec3f(anywhere))) {
+      EXPECT_LT((*place - anywhere).norm(), 1e-5) << k;
+    } else {
+      ++moved;
+    }
+  }
+  EXPECT_GT(moved, 100);
+}
+
+TEST_F(Places, HangInFrontOfANode) {
+  const std::string node = scene_.instances.back().name;
+  ASSERT_FALSE(node.empty());
+  const AllowedPlaces places(scene_, bounds_, {.mounts = {{node, 0.15}}});
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    const auto place = places.nearest(random_position(k));
+    ASSERT_TRUE(place) << k;
+    EXPECT_NEAR(distance_to_surfaces(scene_, *place, node), 0.15, 2e-4) << k;
+  }
+}
+
+TEST_F(Places, SettleLightsFarApart) {
+  const AllowedPlaces places(scene_, bounds_, {.surface_distance = 0.2, .light_distance = 0.5},
+                             {to_eigen(bounds_.center())});
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    std::vector<Vector3d> lights;
+    for (std::uint32_t j = 0; j < 5; ++j) lights.push_back(0.3 * random_position(5 * k + j));
+    if (!places.settle(lights)) continue;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      EXPECT_GE((lights[i] - to_eigen(bounds_.center())).norm(), 0.5 - 1e-6);
+      EXPECT_GE(distance_to_surfaces(scene_, lights[i]), 0.2 * (1 - 1e-6));
+      for (std::size_t j = 0; j < i; ++j) EXPECT_GE((lights[i] - lights[j]).norm(), 0.5 - 1e-6) << k;
+    }
+  }
+  std::vector<Vector3d> same(3, to_eigen(bounds_.center()) + Vector3d(0.8, 0.1, 0));
+  EXPECT_TRUE(places.settle(same));
+}
+
+TEST_F(Places, ThatDoNotExistAreToldSo) {
+  const AllowedPlaces none(scene_, bounds_, {.surface_distance = 100});
+  EXPECT_FALSE(none.nearest(to_eigen(bounds_.center())));
+  const AllowedPlaces small(scene_, {{1, 1, 1}, {1.1F, 1.1F, 1.1F}}, {.light_distance = 1});
+  std::vector<Vector3d> two{{1, 1, 1}, {1.1, 1.1, 1.1}};
+  EXPECT_FALSE(small.settle(two));
+  EXPECT_THROW(AllowedPlaces(scene_, bounds_, {.mounts = {{"no such node", 0}}}), renderer::Error);
+  EXPECT_THROW(AllowedPlaces(scene_, bounds_, {.boxes = {{{90, 90, 90}, {91, 91, 91}}}}), renderer::Error);
+  const std::string node = scene_.instances.back().name;
+  EXPECT_THROW(AllowedPlaces(scene_, bounds_, {.mounts = {{node, 0.1}}, .surface_distance = 0.2}), renderer::Error);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse
