@@ -83,8 +83,7 @@ int run_bake(const BakeCommand& options) {
   const inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);
   const inverse::BakeSettings settings = bake_settings(options.transport, options.common);
   const inverse::LightGrid grid = inverse::choose_light_grid(
-      *stage.tracer, receivers, light_grid_options(options.grid.size, boxes_of(*stage.scene, options.grid.regions)),
-      settings, session.control());
+      *stage.tracer, receivers, light_grid_options(*stage.scene, options.grid), settings, session.control());
   session.stop_if_interrupted();
   inverse::Baker baker(*stage.tracer, receivers, grid, settings, memory_left(options.memory), session.control());
   const inverse::BakeSummary baked = bake_saying_what_stays(options, baker, session);

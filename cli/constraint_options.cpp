@@ -23,7 +23,7 @@ std::array<double, 2> parse_kelvin(const std::string& text) {
 inverse::Mount parse_mount(const std::string& text) {
   const std::size_t comma = text.rfind(',');
   if (text.empty() || comma == 0) throw UsageError(fmt::format("'{}' (expected NODE or NODE,METRES)", text));
-  if (comma == text.npos) return {text, 0};
+  if (comma == text.npos) return {text};
   return {text.substr(0, comma), parse_number(std::string_view(text).substr(comma + 1), kNotNegative)};
 }
 
@@ -39,9 +39,12 @@ void add_constraint_options(CLI::App& command, ConstraintOptions& options) {
            options.file);
   add_count(command, {"--max-lights", "N", "At most N lights (default 32)"}, given.max_lights, kLightCount);
   add_count(command, {"--lights", "N", "Exactly N lights"}, given.lights, kLightCount);
-  add_repeated(command,
-               {"--on-surface", "NODE[,M]", "Lights hang M metres in front of this node; again for a further one"},
-               [&given](const std::string& text) { given.mounts.push_back(parse_mount(text)); });
+  add_repeated(
+      command,
+      {"--on-surface", "NODE[,M]",
+       "Lights hang M metres in front of this node (default: a hundredth of the scene's diagonal); again for a "
+       "further one"},
+      [&given](const std::string& text) { given.mounts.push_back(parse_mount(text)); });
   add_number(command, {"--surface-distance", "M", "No light nearer than M metres to any surface"},
              given.surface_distance, kNotNegative);
   add_number(command, {"--light-distance", "M", "No two lights nearer than M metres to each other"},
@@ -84,12 +87,6 @@ inverse::IntensityRules intensity_rules(const inverse::LightConstraints& constra
   inverse::IntensityRules rules{.one_color = constraints.one_color, .kelvin = constraints.kelvin};
   if (constraints.max_intensity) rules.max_intensity = *constraints.max_intensity;
   return rules;
-}
-
-std::vector<renderer::Box3f> boxes_around(const renderer::Scene& scene, const inverse::PlaceRules& rules) {
-  std::vector<renderer::Box3f> boxes = rules.boxes;
-  for (const inverse::Mount& mount : rules.mounts) boxes.push_back(inverse::bounds_of(scene, mount));
-  return boxes;
 }
 
 }  // namespace chiaro::cli

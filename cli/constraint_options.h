@@ -30,7 +30,4 @@ void require_known_to(inverse::SolveMethod method, const inverse::LightConstrain
 inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::LightConstraints& constraints);
 inverse::IntensityRules intensity_rules(const inverse::LightConstraints& constraints);
 
-// Boxes around all places of the rules; none: anywhere.
-std::vector<renderer::Box3f> boxes_around(const renderer::Scene& scene, const inverse::PlaceRules& rules);
-
 }  // namespace chiaro::cli

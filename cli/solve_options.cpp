@@ -102,7 +102,8 @@ inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Tar
                                 .places = place_rules(*stage.scene, choices.constraints),
                                 .intensities = intensity_rules(choices.constraints),
                                 .lights_in_place = lights_in_place(stage, choices)};
-  problem.grid = light_grid_options(choices.grid.size, boxes_around(*stage.scene, problem.places));
+  problem.grid = inverse::around_places({.counts = choices.grid.size.counts, .error = choices.grid.size.error},
+                                        *stage.scene, problem.places);
   return problem;
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/add_options.h"
 #include "cli/scene_options.h"
+#include "inverse/transport/allowed_places.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -56,15 +57,9 @@ std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::v
   return boxes;
 }
 
-inverse::LightGridOptions light_grid_options(const GridSize& size, const std::vector<renderer::Box3f>& parts) {
-  inverse::LightGridOptions grid{.counts = size.counts, .parts = parts, .error = size.error};
-  if (parts.empty()) return grid;
-  grid.region.emplace();
-  for (const renderer::Box3f& part : parts) {
-    grid.region->extend(part.min);
-    grid.region->extend(part.max);
-  }
-  return grid;
+inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options) {
+  return inverse::around_places({.counts = options.size.counts, .error = options.size.error}, scene,
+                                {.boxes = boxes_of(scene, options.regions)});
 }
 
 void add_max_edge_option(CLI::App& command, float& max_edge) {

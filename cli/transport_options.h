@@ -38,8 +38,7 @@ struct GridOptions {
 
 void add_grid_options(CLI::App& command, GridOptions& options);
 std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<std::string>& regions);
-// parts: where lights may stand; none: anywhere.
-inverse::LightGridOptions light_grid_options(const GridSize& size, const std::vector<renderer::Box3f>& parts);
+inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options);
 
 // --on and --max-edge.
 struct SurfaceOptions {

@@ -41,10 +41,11 @@ std::vector<renderer::SurfaceSample> samples_of(const Target& target, const Rece
   return samples;
 }
 
-std::vector<Column> unity_columns(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
-                                  const SolveOptions& options, const renderer::Control& control) {
+std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::Lights& lights,
+                                  const std::vector<renderer::SurfaceSample>& at, const SolveOptions& options,
+                                  const renderer::Control& control) {
   renderer::Lights unity;
-  for (const renderer::Light& light : problem.lights_in_place) unity.push_back(with_intensity(light, {1, 1, 1}));
+  for (const renderer::Light& light : lights) unity.push_back(with_intensity(light, {1, 1, 1}));
   const int paths = std::max(kLeastSamples, verification_samples(options, at.size()));
   const renderer::TraceOptions trace{paths, problem.bake.bounces, fresh_seed(options.seed, 6), true};
   std::vector<Column> columns;
@@ -99,20 +100,37 @@ std::vector<FoundLight> lit(const renderer::Lights& lights, const Observations& 
   return found;
 }
 
+struct ManyObservations {
+  std::vector<Column> columns;  // of each light, of 1 candela (or lux)
+  Observations observations;
+};
+
+ManyObservations observe_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                              const renderer::Control& control) {
+  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const auto samples = samples_of(problem.target, draw);
+  const int fixed_samples = verification_samples(options, samples.size());
+  ManyObservations many{
+      unity_columns(problem, lights, samples, options, control),
+      observe_target(problem.target, draw, fixed_illumination(problem, samples, fixed_samples, options, control))};
+  many.observations.rules = problem.intensities;
+  return many;
+}
+
 }  // namespace
+
+PlacedFit refit_over_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                          const renderer::Control& control) {
+  const ManyObservations many = observe_many(problem, lights, options, control);
+  const IntensityFit fit = fit_intensities(many.observations, many.columns);
+  return {fit.intensity, error_of(many.observations, many.columns, fit.intensity)};
+}
 
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock;
   SolveResult result;
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const auto samples = samples_of(problem.target, draw);
-  const std::vector<Column> columns = unity_columns(problem, samples, options, control);
+  const auto [columns, observations] = observe_many(problem, problem.lights_in_place, options, control);
   result.cache_seconds = clock.finish("traced_lights", {{"lights", double(columns.size())}});
-  Observations observations = observe_target(
-      problem.target, draw,
-      fixed_illumination(problem, samples, verification_samples(options, samples.size()), options, control));
-  observations.rules = problem.intensities;
-  clock.finish("fixed_illumination", {});
   const IntensityFit fit = fit_intensities(observations, columns);
   result.relative_l2_cached = error_of(observations, columns, fit.intensity);
   result.optimal_seconds =
@@ -127,7 +145,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.initial_relative_l2 = error_of(observations, columns, before);
   result.lights = lit(problem.lights_in_place, observations, columns, fit.intensity);
   result.target_noise = target_noise(problem.target);
-  result.important_vertices = int(samples.size());
+  result.important_vertices = int(observations.wanted.rows());
   result.termination = "all lights stay where they are";
   verify(problem, options, control, result);
   clock.finish("verification",

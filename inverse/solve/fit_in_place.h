@@ -4,6 +4,15 @@
 
 namespace chiaro::inverse {
 
+// Intensities of lights at their places, fitted over up to 50 000 receivers.
+struct PlacedFit {
+  std::vector<Eigen::Array3d> intensity;
+  double error = 0;  // (3.6) over these receivers
+};
+// By what each brings by path tracing, whatever its intensity is now.
+PlacedFit refit_over_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                          const renderer::Control& control);
+
 // The intensities of lights that stay where they are, of any kind that shines from somewhere, by least squares over
 // what each brings by path tracing: no bake is needed. Error where none of them reaches the painted surfaces.
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control);

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 #include <Eigen/QR>
 
 #include "renderer/core/control.h"
@@ -201,6 +202,8 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   double* const parameters = positions.front().data();
   problem.AddParameterBlock(parameters, int(3 * start.size()), new AllowedPositions(response.places(), start.size()));
   problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, parameters);
+  // Ceres writes to standard error where it gives up, whatever its options say.
+  FLAGS_minloglevel = google::FATAL;
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
   for (std::size_t j = 0; j < start.size(); ++j) result.lights[j].position = positions[j];

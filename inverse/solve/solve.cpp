@@ -32,9 +32,10 @@ constexpr std::size_t kHeldOut = 1500;            // receivers that tell how man
 constexpr int kFixedSamples = 512;                // per important vertex
 constexpr int kFixedSamplesOfMany = 32;           // per receiver of the last refinement …
 constexpr std::size_t kMany = 50000;              // … of so many at most
-constexpr double kExplained = 1.5;    // times the noise of the target, or less: more receivers hardly tell more
-constexpr double kNegligible = 1e-3;  // contribution to the target's norm
-constexpr double kOnSurface = 0.5;    // of a target's receivers must lie on the scene
+constexpr double kExplained = 1.5;      // times the noise of the target, or less: more receivers hardly tell more
+constexpr double kFarFromTarget = 0.1;  // error, where rules keep lights from where they belong
+constexpr double kNegligible = 1e-3;    // contribution to the target's norm
+constexpr double kOnSurface = 0.5;      // of a target's receivers must lie on the scene
 
 void check_target(const SolveProblem& problem) {
   const double fraction = fraction_on_surface(problem.tracer, problem.target.receivers);
@@ -55,6 +56,12 @@ std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_
 // Rules that speak of more than a light's place.
 bool ties_lights_together(const SolveProblem& problem) {
   return problem.intensities.any() || problem.places.light_distance > 0;
+}
+
+bool has_rules(const SolveProblem& problem) {
+  const PlaceRules& places = problem.places;
+  return ties_lights_together(problem) || places.surface_distance > 0 || !places.boxes.empty() ||
+         !places.mounts.empty();
 }
 
 std::vector<std::size_t> all_indices(std::size_t count) {
@@ -181,6 +188,17 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   return joined(beside_surfaces, refined.lights);
 }
 
+// Lights that rules keep from where they belong may shine on receivers that were not among the important ones.
+LightEstimates refitted_over_many(const JointSearch& search, LightEstimates lights, StageClock& clock) {
+  renderer::Lights placed;
+  for (const LightEstimate& light : lights) placed.emplace_back(point_light(light));
+  if (placed.empty()) return lights;
+  const PlacedFit fit = refit_over_many(search.problem, placed, search.options, search.control);
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
+  clock.finish("intensities_over_many", {{"relative_l2", fit.error}});
+  return lights;
+}
+
 Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
                          StageClock& clock) {
   const SolveOptions& options = search.options;
@@ -218,9 +236,14 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
   const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
-  const bool enough = count.out_of_time || explained || ties_lights_together(search.problem);
-  const LightEstimates all = enough ? joined(beside_surfaces, polished.lights)
-                                    : refined_over_many(search, polished.lights, beside_surfaces, clock);
+  const auto at_last = [&] {
+    if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
+    const bool kept_away = has_rules(search.problem) && polished.error > kFarFromTarget;
+    if (kept_away || ties_lights_together(search.problem))
+      return refitted_over_many(search, joined(beside_surfaces, polished.lights), clock);
+    return refined_over_many(search, polished.lights, beside_surfaces, clock);
+  };
+  const LightEstimates all = at_last();
   return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"

@@ -20,9 +20,11 @@ using renderer::Box3f;
 using renderer::Vec3f;
 
 constexpr int kRounds = 40;
-constexpr double kFarther = 1e-5;    // in parts of a distance: what is pushed away ends clearly beyond it
-constexpr double kHanging = 1e-3;    // in parts of the clearance, or …
-constexpr double kHangingAt = 1e-4;  // … metres: it is kept
+constexpr double kFarther = 1e-5;           // in parts of a distance: what is pushed away ends clearly beyond it
+constexpr double kHanging = 1e-3;           // in parts of the clearance, or …
+constexpr double kHangingAt = 1e-4;         // … metres: it is kept
+constexpr double kDefaultClearance = 0.01;  // of the scene's diagonal
+constexpr double kInFront = 0.5;            // cosine between a surface's normal and the way to a light, at least
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 Vector3d clamped(const Vector3d& position, const Box3f& box) {
@@ -30,6 +32,11 @@ Vector3d clamped(const Vector3d& position, const Box3f& box) {
 }
 
 Box3f intersection(const Box3f& a, const Box3f& b) { return {max(a.min, b.min), min(a.max, b.max)}; }
+
+Box3f grown(const Box3f& box, double by) {
+  const Vec3f room{float(by), float(by), float(by)};
+  return {box.min - room, box.max + room};
+}
 
 // As positions are given out.
 Vector3d as_float(const Vector3d& position) { return to_eigen(to_vec3f(position)); }
@@ -42,12 +49,14 @@ Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& oth
   return length > 0 ? Vector3d((to - from) / length) : otherwise;
 }
 
-void check_clearance(const renderer::Scene& scene, const Mount& mount, double surface_distance) {
-  if (mount.clearance >= surface_distance) return;
+double clearance_of(const Mount& mount, const renderer::Scene& scene, double surface_distance) {
+  const double clearance =
+      mount.clearance ? *mount.clearance : kDefaultClearance * double(NearestSurface(scene).bounds().diagonal());
+  if (clearance >= surface_distance) return clearance;
   throw renderer::Error(
       {scene.path, "surface to hang lights on",
        fmt::format("no light possible: lights are to hang {} m from \"{}\", and no nearer than {} m to any surface",
-                   mount.clearance, mount.node, surface_distance),
+                   clearance, mount.node, surface_distance),
        "a distance to surfaces no larger than the clearance"});
 }
 
@@ -60,11 +69,17 @@ NearestSurface surface_of(const renderer::Scene& scene, const Mount& mount) {
 
 }  // namespace
 
-Box3f bounds_of(const renderer::Scene& scene, const Mount& mount) {
-  const Box3f surface = surface_of(scene, mount).bounds();
-  const auto clearance = float(mount.clearance);
-  const Vec3f room{clearance, clearance, clearance};
-  return {surface.min - room, surface.max + room};
+LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules) {
+  grid.parts = rules.boxes;
+  if (!rules.mounts.empty()) grid.region = NearestSurface(scene).bounds();
+  for (const Mount& mount : rules.mounts)
+    grid.parts.push_back(grown(surface_of(scene, mount).bounds(), clearance_of(mount, scene, 0)));
+  for (const Box3f& part : grid.parts) {
+    if (!grid.region) grid.region.emplace();
+    grid.region->extend(part.min);
+    grid.region->extend(part.max);
+  }
+  return grid;
 }
 
 AllowedPlaces::AllowedPlaces(const Box3f& region) : boxes_{region} {}
@@ -76,8 +91,8 @@ AllowedPlaces::AllowedPlaces(const renderer::Scene& scene, const Box3f& region, 
     if (const Box3f inside = intersection(box, region); !inside.empty()) boxes_.push_back(inside);
   }
   for (const Mount& mount : rules.mounts) {
-    check_clearance(scene, mount, rules.surface_distance);
-    mounts_.push_back(std::make_shared<MountedSurface>(MountedSurface{surface_of(scene, mount), mount.clearance}));
+    mounts_.push_back(std::make_shared<MountedSurface>(
+        MountedSurface{surface_of(scene, mount), clearance_of(mount, scene, rules.surface_distance)}));
   }
   const bool anywhere = rules.boxes.empty() && rules.mounts.empty();
   if (anywhere) boxes_.push_back(region);
@@ -100,17 +115,23 @@ Vector3d AllowedPlaces::away_from_surfaces(const Vector3d& position) const {
   return near->point + distance * direction(near->point, position, near->normal);
 }
 
+// The direction to it leads away from the surface, and not past its edge.
+bool AllowedPlaces::is_in_front(const NearestPoint& near, const Vector3d& position) {
+  const double along = (position - near.point).dot(near.normal);
+  return (near.double_sided ? std::abs(along) : along) >= kInFront * near.distance;
+}
+
 Vector3d AllowedPlaces::in_front_of(const MountedSurface& mount, const Vector3d& position) const {
-  const auto near = mount.surface.find(position, kAnywhere);
-  Vector3d outwards = direction(near->point, position, near->normal);
-  if (!near->double_sided && outwards.dot(near->normal) < 0) outwards = near->normal;
-  return near->point + mount.clearance * outwards;
+  const NearestPoint near = *mount.surface.find(position, kAnywhere);
+  const bool behind = near.double_sided && (position - near.point).dot(near.normal) < 0;
+  const Vector3d normal = behind ? Vector3d(-near.normal) : near.normal;
+  const Vector3d outwards = is_in_front(near, position) ? direction(near.point, position, normal) : normal;
+  return near.point + mount.clearance * outwards;
 }
 
 bool AllowedPlaces::hangs_on(const MountedSurface& mount, const Vector3d& position) const {
-  const auto near = mount.surface.find(position, kAnywhere);
-  const bool in_front = near->double_sided || (position - near->point).dot(near->normal) >= 0;
-  return in_front && std::abs(near->distance - mount.clearance) <= tolerance(mount.clearance);
+  const NearestPoint near = *mount.surface.find(position, kAnywhere);
+  return is_in_front(near, position) && std::abs(near.distance - mount.clearance) <= tolerance(mount.clearance);
 }
 
 bool AllowedPlaces::contains(const Vector3d& position) const {

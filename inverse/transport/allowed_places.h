@@ -8,14 +8,15 @@
 
 #include <Eigen/Core>
 
+#include "inverse/transport/light_grid.h"
 #include "inverse/transport/nearest_surface.h"
 
 namespace chiaro::inverse {
 
-// Lights hang in front of this node's surfaces.
+// Lights hang in front of this node's surfaces, and not beside their edges.
 struct Mount {
   std::string node;
-  double clearance = 0;  // metres, from its surfaces
+  std::optional<double> clearance{};  // metres, from its surfaces; absent: a hundredth of the scene's diagonal
 };
 
 struct PlaceRules {
@@ -25,8 +26,9 @@ struct PlaceRules {
   double light_distance = 0;             // metres, between any two lights, at least
 };
 
-// Of all places in front of it. Error for a node that is not there.
-renderer::Box3f bounds_of(const renderer::Scene& scene, const Mount& mount);
+// A grid of lights where the rules allow any, and no farther than a cell from there: over the boxes, and where lights
+// hang on surfaces over the whole scene. Error for a node that is not there.
+LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules);
 
 class AllowedPlaces {
  public:
@@ -50,6 +52,7 @@ class AllowedPlaces {
     NearestSurface surface;
     double clearance = 0;
   };
+  static bool is_in_front(const NearestPoint& near, const Eigen::Vector3d& position);
   Eigen::Vector3d in_front_of(const MountedSurface& mount, const Eigen::Vector3d& position) const;
   bool hangs_on(const MountedSurface& mount, const Eigen::Vector3d& position) const;
   bool clear_of_surfaces(const Eigen::Vector3d& position) const;

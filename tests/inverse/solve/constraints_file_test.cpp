@@ -32,7 +32,7 @@ TEST(ConstraintsFile, ReadsEveryField) {
   ASSERT_EQ(c.mounts.size(), 2U);
   EXPECT_EQ(c.mounts[0].node, "Ceiling");
   EXPECT_EQ(c.mounts[0].clearance, 0.25);
-  EXPECT_EQ(c.mounts[1].clearance, 0);
+  EXPECT_FALSE(c.mounts[1].clearance);
   EXPECT_EQ(c.surface_distance, 0.125);
   EXPECT_EQ(c.light_distance, 0.5);
   EXPECT_EQ(c.max_intensity, 800);
