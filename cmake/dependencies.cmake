@@ -40,6 +40,18 @@ else()
   string(APPEND missing_packages "\n  OpenColorIO: apt-get install libopencolorio-dev")
 endif()
 
+# Scripts that the report's page embeds.
+macro(require_script variable file debian_package)
+  find_file(${variable} javascript/${file} PATHS /usr/share)
+  if(NOT ${variable})
+    string(APPEND missing_packages "\n  ${file}: apt-get install ${debian_package}")
+  endif()
+endmacro()
+
+require_script(three_js three/three.min.js libjs-three)
+require_script(orbit_controls_js three/examples/js/controls/OrbitControls.js libjs-three)
+require_script(chart_js chart.js/chart.min.js libjs-chart.js)
+
 # Debian's OpenImageIO names an include folder of OpenCV that is there only with OpenCV's own headers.
 if(TARGET OpenImageIO::OpenImageIO)
   get_target_property(openimageio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)

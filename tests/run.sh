@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${PRESET:-release}
 
-bash cmake/install_dependencies.sh
+bash cmake/install_dependencies.sh chromium  # opens the report's page
 echo "chiaro: building preset $preset"
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"

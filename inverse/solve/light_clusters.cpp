@@ -82,6 +82,7 @@ LightCutResult cut_light_tree(const LightTree& tree, const Observations& observa
   LightCutResult result;
   result.error = cut.error;
   result.error_curve = cut.error_curve;
+  result.nodes = cut.nodes;
   for (const int node : cut.nodes) result.lights.push_back(tree.representatives[node]);
   return result;
 }

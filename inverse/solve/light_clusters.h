@@ -28,6 +28,7 @@ struct CutOptions {
 
 struct LightCutResult {
   LightEstimates lights;
+  std::vector<int> nodes;           // of the tree, that the lights represent
   double error = 0;                 // (3.6) of the cut
   std::vector<double> error_curve;  // of the cuts with 1, 2, … lights
 };

@@ -1,32 +1,12 @@
 #include "inverse/solve/report.h"
 
-#include <nlohmann/json.hpp>
-
+#include "inverse/solve/report_data.h"
+#include "inverse/solve/report_page.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::inverse {
 namespace {
-
-using nlohmann::json;
-
-json lights_json(const LightEstimates& lights) {
-  json list = json::array();
-  for (const LightEstimate& l : lights) {
-    list.push_back({{"type", "point"},
-                    {"position", {l.position.x(), l.position.y(), l.position.z()}},
-                    {"intensity", {l.intensity[0], l.intensity[1], l.intensity[2]}}});
-  }
-  return list;
-}
-
-json tree_json(const LightTree& tree) {
-  json nodes = json::array();
-  for (const auto& node : tree.tree.nodes) {
-    nodes.push_back({{"left", node.left}, {"right", node.right}, {"distance", node.distance}});
-  }
-  return {{"leaves", tree.tree.leaf_count}, {"nodes", nodes}, {"representatives", lights_json(tree.representatives)}};
-}
 
 // A picture on the receivers: any glTF program shows its colours.
 void save_values(const Receivers& receivers, const std::vector<Vec3f>& values, const std::filesystem::path& path) {
@@ -61,14 +41,10 @@ void write_report(const SolveTrace& trace, const std::filesystem::path& folder) 
   const Receivers& receivers = trace.target.receivers;
   save_values(receivers, importance_colors(trace.importance), folder / "importance.glb");
   save_values(receivers, trace.target.illumination, folder / "target.glb");
-  save_values(receivers, trace.illumination, folder / "found.glb");
-  save_values(receivers, difference_times_8(trace.target, trace.illumination), folder / "difference_x8.glb");
-  const json stages{{"coarse", lights_json(trace.distribution.rounds[0].lights)},
-                    {"fine", lights_json(trace.distribution.rounds[1].lights)},
-                    {"clusters", lights_json(trace.clusters)},
-                    {"tree", tree_json(trace.tree)},
-                    {"found", lights_json(trace.found)}};
-  renderer::write_file_atomically(folder / "stages.json", stages.dump(1) + "\n");
+  save_values(receivers, trace.result.illumination, folder / "found.glb");
+  save_values(receivers, difference_times_8(trace.target, trace.result.illumination), folder / "difference_x8.glb");
+  renderer::write_file_atomically(folder / "stages.json", stages_json(trace));
+  renderer::write_file_atomically(folder / "report.html", make_report_page(page_json(trace)));
 }
 
 std::vector<std::pair<std::string, double>> distribution_figures(const LightDistribution& distribution) {

@@ -5,21 +5,26 @@
 
 #include "inverse/solve/important_vertices.h"
 #include "inverse/solve/light_clusters.h"
+#include "inverse/solve/solve.h"
 
 namespace chiaro::inverse {
 
 struct SolveTrace {
+  const renderer::Scene& scene;
   const Target& target;
   const Importance& importance;
+  const LightGrid& grid;
   const LightDistribution& distribution;
   const LightEstimates& clusters;
   const LightTree& tree;
+  const std::vector<int>& cut;  // nodes of the tree
   const LightEstimates& found;
-  const std::vector<Vec3f>& illumination;  // of the found lights, per receiver
+  const SolveResult& result;
 };
 
-// Into `folder`, made if it is missing: importance.glb (R geometry, G illumination, B chosen), target.glb, found.glb,
-// difference_x8.glb, and stages.json with the lights of every stage. Error where the folder cannot be made.
+// Into `folder`, made if it is missing: report.html, a page to look at in a browser; importance.glb (R geometry,
+// G illumination, B chosen), target.glb, found.glb, difference_x8.glb; and stages.json with the lights and the figures
+// of every stage. Error where the folder cannot be made.
 void write_report(const SolveTrace& trace, const std::filesystem::path& folder);
 
 // Of both rounds, for the stage's figures.

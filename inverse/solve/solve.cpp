@@ -106,6 +106,7 @@ struct Optimum {
   LightEstimates lights;
   LightEstimates start;  // before the last optimisation
   std::string termination;
+  std::vector<int> cut;  // of the light tree, nodes
   std::vector<LightSet> error_curve{};
 };
 
@@ -153,7 +154,8 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
   const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
-  return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light"};
+  return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light",
+          cut.nodes};
 }
 
 struct JointSearch {
@@ -248,7 +250,7 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more",
-          error_curve};
+          cut.nodes, error_curve};
 }
 
 [[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {
@@ -357,12 +359,14 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   verify(problem, options, control, result);
   clock.finish("verification",
                {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
+  result.stages = clock.stages();
   if (!options.report_folder.empty()) {
-    write_report({problem.target, importance, distribution, clusters, tree, optimum.lights, result.illumination},
+    write_report({problem.tracer.scene(), problem.target, importance, transport.cache.grid, distribution, clusters,
+                  tree, optimum.cut, optimum.lights, result},
                  options.report_folder);
     clock.finish("report", {});
+    result.stages = clock.stages();
   }
-  result.stages = clock.stages();
   result.total_seconds = clock.total();
   return result;
 }

@@ -33,7 +33,7 @@ struct SolveOptions {
   int verification_samples =
       0;  // paths per receiver of the final, fresh evaluation; 0: 16 to 1024 by the number of receivers
   std::uint64_t seed = 0;
-  std::filesystem::path report_folder;  // empty: none; what each stage found is written there as glTF and JSON
+  std::filesystem::path report_folder;  // empty: none; what each stage found is written there (report.h)
 };
 
 struct FoundLight {

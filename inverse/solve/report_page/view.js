@@ -1,0 +1,168 @@
+"use strict";
+// The 3D view: one canvas, one camera, one pane or three side by side.
+
+const kOverviewField = 36;  // degrees, vertical
+
+class View {
+  constructor(canvas, receivers, layers, cameras, lights) {
+    this.canvas = canvas;
+    this.lights = lights;
+    this.cameras = cameras;
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setClearColor(0x0f1011);
+    this.renderer.autoClear = false;
+    this.surface = makeSurface(receivers);
+    this.layers = layers;
+    this.world = new THREE.Scene();
+    this.world.add(this.surface, ...layers.map((layer) => layer.object));
+    this.box = new THREE.Box3(new THREE.Vector3(...receivers.min), new THREE.Vector3(...receivers.max));
+    const size = this.box.getSize(new THREE.Vector3()).length();
+    this.camera = new THREE.PerspectiveCamera(kOverviewField, 1, size / 1000, size * 20);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableKeys = false;
+    this.controls.screenSpacePanning = true;
+    this.controls.addEventListener("change", () => this.redraw());
+    this.kinds = [1];
+    this.fitted = true;
+    this.showLabels();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  // At most once per frame of the screen.
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => { this.waiting = false; this.draw(); });
+  }
+
+  resize() {
+    const {clientWidth, clientHeight} = this.canvas.parentElement;
+    this.ratio = Math.min(window.devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.ratio);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    for (const {object} of this.layers) {
+      if (object.material.uniforms) object.material.uniforms.pixelRatio.value = this.ratio;
+    }
+    if (this.fitted) this.overview();
+    this.draw();  // a canvas of another size is blank, and must not be seen so
+  }
+
+  // Left, bottom, width and height of each pane: beside one another, or on a narrow screen above one another.
+  panes() {
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight, count = this.kinds.length;
+    return this.kinds.map((_, k) => width > height
+      ? [(k * width) / count, 0, width / count, height]
+      : [0, ((count - 1 - k) * height) / count, width, height / count]);
+  }
+
+  draw() {
+    this.renderer.setScissorTest(true);
+    this.panes().forEach(([left, bottom, width, height], k) => {
+      this.surface.material.uniforms.kind.value = this.kinds[k];
+      this.camera.aspect = width / height;
+      this.camera.updateProjectionMatrix();
+      this.renderer.setViewport(left, bottom, width, height);
+      this.renderer.setScissor(left, bottom, k + 1 < this.kinds.length && left + width < this.canvas.clientWidth ? width - 2 : width, height);
+      this.renderer.clear();
+      this.renderer.render(this.world, this.camera);
+      if (k === 0) this.triangles = this.renderer.info.render.triangles;
+    });
+    this.placeLabels();
+  }
+
+  show(quantity) {
+    this.kinds = quantity.kinds || [quantity.kind];
+    const captions = this.panes().map(([left, bottom, , height], k) => {
+      const caption = document.createElement("span");
+      caption.textContent = kQuantities.find((other) => other.kind === this.kinds[k]).name.replace("…", "Importance:");
+      caption.style.left = left + "px";
+      caption.style.top = this.canvas.clientHeight - bottom - height + "px";
+      return caption;
+    });
+    document.getElementById("captions").replaceChildren(...captions);
+    if (this.fitted) this.overview();
+    this.redraw();
+  }
+
+  setExposure(stops) {
+    this.surface.material.uniforms.exposure.value = 2 ** stops;
+    this.redraw();
+  }
+
+  seeThroughBacks(see) {
+    this.surface.material.side = see ? THREE.FrontSide : THREE.DoubleSide;
+    this.surface.material.needsUpdate = true;
+    this.redraw();
+  }
+
+  // From the side that the scene's first camera stands on, a little above.
+  overview() {
+    const center = this.box.getCenter(new THREE.Vector3());
+    const side = new THREE.Vector3(0.45, 0, 1);
+    if (this.cameras.length > 0) side.fromArray(this.cameras[0].position).sub(center).setY(0);
+    if (!(side.length() > 0)) side.set(0.45, 0, 1);
+    side.normalize().setY(0.5).normalize();
+    this.look(center.clone().addScaledVector(side, this.distanceToFit(center, side)), center, kOverviewField);
+    this.fitted = true;
+  }
+
+  // From the center, along `side`, at which all corners of the scene are in a pane.
+  distanceToFit(center, side) {
+    const [, , width, height] = this.panes()[0];
+    const vertical = Math.tan((kOverviewField * Math.PI) / 360), horizontal = (vertical * width) / height;
+    const turned = new THREE.PerspectiveCamera();
+    turned.position.copy(side);
+    turned.lookAt(0, 0, 0);
+    const unturned = turned.quaternion.clone().conjugate();
+    const {min, max} = this.box, distances = [];
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new THREE.Vector3(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z);
+      at.sub(center).applyQuaternion(unturned);
+      distances.push(at.z + Math.max(Math.abs(at.x) / horizontal, Math.abs(at.y) / vertical));
+    }
+    return 1.08 * Math.max(...distances);
+  }
+
+  lookThrough(camera) {
+    const position = new THREE.Vector3(...camera.position), backward = new THREE.Vector3(...camera.backward);
+    const ahead = Math.max(0.1 * this.box.getSize(new THREE.Vector3()).length(),
+      backward.dot(position.clone().sub(this.box.getCenter(new THREE.Vector3()))));
+    this.look(position, position.clone().addScaledVector(backward, -ahead), (camera.vertical_fov * 180) / Math.PI);
+    this.fitted = false;
+  }
+
+  look(position, target, fieldOfView) {
+    this.camera.position.copy(position);
+    this.camera.fov = fieldOfView;
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.redraw();
+  }
+
+  turnAbout(position) {
+    this.fitted = false;
+    this.controls.target.set(...position);
+    this.controls.update();
+    this.redraw();
+  }
+
+  showLabels() {
+    this.labels = this.lights.map((_, k) => {
+      const label = document.createElement("span");
+      label.textContent = k + 1;
+      return label;
+    });
+    document.getElementById("labels").replaceChildren(...this.labels);
+  }
+
+  placeLabels() {
+    const shown = this.layers.find((layer) => layer.id === "found").object.visible && this.kinds.length === 1;
+    this.labels.forEach((label, k) => {
+      const at = new THREE.Vector3(...this.lights[k].position).project(this.camera);
+      label.hidden = !shown || Math.abs(at.z) > 1;
+      label.style.left = ((at.x + 1) / 2) * this.canvas.clientWidth + "px";
+      label.style.top = ((1 - at.y) / 2) * this.canvas.clientHeight + "px";
+    });
+  }
+}
