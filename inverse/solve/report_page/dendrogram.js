@@ -1,7 +1,7 @@
 "use strict";
 // The light tree: leaves side by side, nodes at the height of their children's distance, the cut ringed.
 
-// Of each node: x, the middle of its leaves' places, and y, the square root of its distance.
+// Of each node: x, the middle of its children's places, and y, the square root of its distance, or of the largest below it.
 function placeNodes(tree) {
   const places = new Array(tree.nodes.length);
   let leaf = 0;
@@ -16,7 +16,8 @@ function placeNodes(tree) {
     } else if (!places[right]) {
       open.push(right);
     } else {
-      places[node] = {x: (places[left].x + places[right].x) / 2, y: Math.sqrt(distance || 0)};
+      const a = places[left], b = places[right];
+      places[node] = {x: (a.x + b.x) / 2, y: Math.max(Math.sqrt(distance || 0), a.y, b.y)};
       open.pop();
     }
   }

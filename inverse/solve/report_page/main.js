@@ -32,7 +32,7 @@ function makePage() {
   document.title = report.scene + " · chiaro";
   document.getElementById("scene").textContent = report.scene;
   document.getElementById("termination").textContent =
-    `Ended with ${result.termination}. ${receivers.count} receivers, ${receivers.triangleCount} triangles.`;
+    `Ended: ${result.termination}. ${receivers.count} receivers, ${receivers.triangleCount} triangles.`;
   fillFigures(result);
   fillStages(report.stages, result.stage_seconds);
   const view = makeView(report, receivers);
@@ -45,7 +45,7 @@ function makePage() {
   Object.assign(document.body.dataset, {
     view: view ? "yes" : "no",
     lights: document.querySelectorAll("#lights tbody tr").length,
-    triangles: view ? view.triangles : 0,
+    triangles: view ? view.renderer.info.render.triangles : 0,
   });
 }
 

@@ -23,8 +23,8 @@ const kMarkerFragments = {
     float shade = smoothstep(0.62, 0.7, r) * (1.0 - smoothstep(0.82, 0.9, r));
     gl_FragColor = vec4(color * shade, edge);`,
   glow: `
-    float core = 1.0 - smoothstep(0.26, 0.32, r), rim = 1.0 - smoothstep(0.34, 0.4, r);
-    float halo = 0.55 * pow(1.0 - min(r, 1.0), 2.0);
+    float core = 1.0 - smoothstep(0.19, 0.24, r), rim = 1.0 - smoothstep(0.26, 0.31, r);
+    float halo = 0.4 * pow(1.0 - min(r, 1.0), 2.0);
     gl_FragColor = vec4(mix(color, mix(vec3(0.0), mix(color, vec3(1.0), 0.5), core), rim), max(rim, halo));`,
 };
 

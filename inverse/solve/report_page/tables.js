@@ -28,7 +28,7 @@ function fillFigures(result) {
 // As many decimals as the surest of the numbers has a use for.
 function decimalsFor(halves) {
   const least = Math.min(...halves.filter((half) => isNumber(half) && half > 0));
-  return isNumber(least) ? Math.min(4, Math.max(0, -Math.floor(Math.log10(least)))) : 3;
+  return isNumber(least) ? Math.min(4, Math.max(0, -Math.floor(Math.log10(least / 2)))) : 3;
 }
 
 function numberCell(label, value, half, decimals) {

@@ -2,14 +2,15 @@
 // The 3D view: one canvas, one camera, one pane or three side by side.
 
 const kOverviewField = 36;  // degrees, vertical
+const kGap = 2;  // pixels between panes
+const kBehind = 0x0f1011, kBetween = 0x2e3033;
 
 class View {
   constructor(canvas, receivers, layers, cameras, lights) {
     this.canvas = canvas;
     this.lights = lights;
     this.cameras = cameras;
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
-    this.renderer.setClearColor(0x0f1011);
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true});
     this.renderer.autoClear = false;
     this.surface = makeSurface(receivers);
     this.layers = layers;
@@ -45,34 +46,47 @@ class View {
       if (object.material.uniforms) object.material.uniforms.pixelRatio.value = this.ratio;
     }
     if (this.fitted) this.overview();
+    this.writeCaptions();
     this.draw();  // a canvas of another size is blank, and must not be seen so
   }
 
   // Left, bottom, width and height of each pane: beside one another, or on a narrow screen above one another.
   panes() {
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight, count = this.kinds.length;
+    const across = Math.ceil((width - kGap * (count - 1)) / count);
+    const down = Math.ceil((height - kGap * (count - 1)) / count);
     return this.kinds.map((_, k) => width > height
-      ? [(k * width) / count, 0, width / count, height]
-      : [0, ((count - 1 - k) * height) / count, width, height / count]);
+      ? [k * (across + kGap), 0, across, height]
+      : [0, (count - 1 - k) * (down + kGap), width, down]);
   }
 
   draw() {
+    this.renderer.setScissorTest(false);
+    this.renderer.setClearColor(kBetween);
+    this.renderer.clear();
     this.renderer.setScissorTest(true);
-    this.panes().forEach(([left, bottom, width, height], k) => {
-      this.surface.material.uniforms.kind.value = this.kinds[k];
-      this.camera.aspect = width / height;
-      this.camera.updateProjectionMatrix();
-      this.renderer.setViewport(left, bottom, width, height);
-      this.renderer.setScissor(left, bottom, k + 1 < this.kinds.length && left + width < this.canvas.clientWidth ? width - 2 : width, height);
-      this.renderer.clear();
-      this.renderer.render(this.world, this.camera);
-      if (k === 0) this.triangles = this.renderer.info.render.triangles;
-    });
+    this.renderer.setClearColor(kBehind);
+    this.panes().forEach((pane, k) => this.drawPane(pane, this.kinds[k]));
     this.placeLabels();
+  }
+
+  drawPane([left, bottom, width, height], kind) {
+    this.surface.material.uniforms.kind.value = kind;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setViewport(left, bottom, width, height);
+    this.renderer.setScissor(left, bottom, width, height);
+    this.renderer.clear();
+    this.renderer.render(this.world, this.camera);
   }
 
   show(quantity) {
     this.kinds = quantity.kinds || [quantity.kind];
+    this.canvas.parentElement.dataset.panes = this.kinds.length;
+    this.resize();
+  }
+
+  writeCaptions() {
     const captions = this.panes().map(([left, bottom, , height], k) => {
       const caption = document.createElement("span");
       caption.textContent = kQuantities.find((other) => other.kind === this.kinds[k]).name.replace("…", "Importance:");
@@ -81,8 +95,6 @@ class View {
       return caption;
     });
     document.getElementById("captions").replaceChildren(...captions);
-    if (this.fitted) this.overview();
-    this.redraw();
   }
 
   setExposure(stops) {
@@ -121,7 +133,7 @@ class View {
       at.sub(center).applyQuaternion(unturned);
       distances.push(at.z + Math.max(Math.abs(at.x) / horizontal, Math.abs(at.y) / vertical));
     }
-    return 1.08 * Math.max(...distances);
+    return 1.03 * Math.max(...distances);
   }
 
   lookThrough(camera) {

@@ -149,7 +149,8 @@ TEST(Solve, SaysWhatItFound) {
   EXPECT_LE(seconds, result.total_seconds * 1.01 + 0.01);
   EXPECT_GT(result.initial_seconds, 0);
   EXPECT_GT(result.optimal_seconds, 0);
-  for (const char* name : {"importance.glb", "target.glb", "found.glb", "difference_x8.glb", "stages.json"}) {
+  for (const char* name :
+       {"report.html", "importance.glb", "target.glb", "found.glb", "difference_x8.glb", "stages.json"}) {
     EXPECT_TRUE(std::filesystem::exists(options.report_folder / name)) << name;
   }
 }
