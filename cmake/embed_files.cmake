@@ -1,6 +1,6 @@
-# embed_files(TARGET HEADER FILE…): makes the bytes of files a part of a library, where
-# embedded_file("name without folder"), declared in HEADER, finds them.
-function(embed_files target header)
+# embed_files(TARGET NAMESPACE HEADER FILE…): makes the bytes of files a part of a library, where
+# NAMESPACE::embedded_file("name without folder"), declared in HEADER, finds them.
+function(embed_files target namespace header)
   set(assembly "  .section .rodata\n")
   set(declarations "")
   set(rows "")
@@ -22,13 +22,13 @@ function(embed_files target header)
 "#include \"${header}\"
 
 ${declarations}
-namespace chiaro {
+namespace ${namespace} {
 
 std::string_view embedded_file(std::string_view name) {
 ${rows}  return {};
 }
 
-}  // namespace chiaro
+}  // namespace ${namespace}
 ")
   set_source_files_properties(${folder}/${target}.S PROPERTIES OBJECT_DEPENDS "${paths}")
   target_sources(${target} PRIVATE ${folder}/${target}.S ${folder}/${target}.cpp)

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace chiaro {
+namespace chiaro::inverse {
 
 // Its bytes; empty where no such file is embedded.
 std::string_view embedded_file(std::string_view name);
 
-}  // namespace chiaro
+}  // namespace chiaro::inverse

@@ -11,7 +11,7 @@ function makeView(report, receivers) {
     const layers = makeLayers(report, receivers);
     return new View(canvas, receivers, layers, report.cameras, report.result.lights);
   } catch (error) {
-    document.getElementById("view").hidden = true;
+    for (const id of ["view", "panel"]) document.getElementById(id).hidden = true;
     document.getElementById("no-view").hidden = false;
     console.warn(error);
     return null;
@@ -38,10 +38,7 @@ function makePage() {
   const view = makeView(report, receivers);
   fillLights(result.lights, (light) => view && view.turnAbout(light.position));
   makePlots(report);
-  if (view) {
-    makePanel(view, receivers, report.cameras);
-    view.draw();
-  }
+  if (view) makePanel(view, receivers, report.cameras);
   Object.assign(document.body.dataset, {
     view: view ? "yes" : "no",
     lights: document.querySelectorAll("#lights tbody tr").length,

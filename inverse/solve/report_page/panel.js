@@ -68,9 +68,9 @@ function addCameras(view, cameras) {
 }
 
 function makePanel(view, receivers, cameras) {
-  addQuantities(view);
   addExposure(view, automaticExposure(receivers.target));
   addLayers(view);
+  addQuantities(view);
   addCameras(view, cameras);
   const backs = document.getElementById("backs");
   backs.addEventListener("change", () => view.seeThroughBacks(backs.checked));

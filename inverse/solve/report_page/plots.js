@@ -25,10 +25,8 @@ const percentAxis = {
 };
 
 function emptyPlot(canvas, text) {
-  const note = element("p", text);
-  note.className = "note";
-  canvas.parentElement.style.height = "auto";
-  canvas.replaceWith(note);
+  canvas.closest("figure").querySelector("figcaption").textContent = text;
+  canvas.parentElement.remove();
 }
 
 function line(label, data, color, more) {
@@ -56,7 +54,7 @@ function plotErrors(canvas, labels, datasets, xTitle) {
 }
 
 function plotCurve(canvas, curve, result) {
-  if (curve.length === 0) return emptyPlot(canvas, "This method makes no sets of other sizes.");
+  if (curve.length === 0) return emptyPlot(canvas, "No sets of other sizes were looked for.");
   const chosen = result.lights.length;
   const color = curve.map((set) => (set.light_count === chosen ? "#fff" : kAccent));
   const datasets = [line("error", curve.map((set) => set.relative_l2), kAccent,

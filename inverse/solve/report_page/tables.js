@@ -48,7 +48,9 @@ function lightRow(light, index, decimals, select) {
     row.append(numberCell(axis + " (m)", light.position[k], position[k], decimals.metres)));
   ["red", "green", "blue"].forEach((channel, k) =>
     row.append(numberCell(channel + " (cd)", light.intensity[k], intensity[k], decimals.candela)));
-  row.append(element("td", percent(light.contribution)));
+  const share = element("td", percent(light.contribution));
+  share.dataset.label = "contribution ";
+  row.append(share);
   row.tabIndex = 0;
   row.addEventListener("click", () => select(light));
   row.addEventListener("keydown", (event) => { if (event.key === "Enter") select(light); });

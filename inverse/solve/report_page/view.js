@@ -1,7 +1,6 @@
 "use strict";
 // The 3D view: one canvas, one camera, one pane or three side by side.
 
-const kOverviewField = 36;  // degrees, vertical
 const kGap = 2;  // pixels between panes
 const kBehind = 0x0f1011, kBetween = 0x2e3033;
 
@@ -26,8 +25,8 @@ class View {
     this.kinds = [1];
     this.fitted = true;
     this.showLabels();
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
-    this.resize();
+    this.measure();
+    new ResizeObserver(() => this.resized()).observe(canvas.parentElement);
   }
 
   // At most once per frame of the screen.
@@ -37,17 +36,28 @@ class View {
     requestAnimationFrame(() => { this.waiting = false; this.draw(); });
   }
 
-  resize() {
+  measure() {
     const {clientWidth, clientHeight} = this.canvas.parentElement;
-    this.ratio = Math.min(window.devicePixelRatio, 2);
-    this.renderer.setPixelRatio(this.ratio);
+    this.size = [clientWidth, clientHeight];
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);
     for (const {object} of this.layers) {
-      if (object.material.uniforms) object.material.uniforms.pixelRatio.value = this.ratio;
+      if (object.material.uniforms) object.material.uniforms.pixelRatio.value = this.renderer.getPixelRatio();
     }
+  }
+
+  resized() {
+    const {clientWidth, clientHeight} = this.canvas.parentElement;
+    if (this.size[0] === clientWidth && this.size[1] === clientHeight) return;
+    this.measure();
+    this.arrange();
+  }
+
+  // Draws at once: a canvas of another size is blank, and must not be seen so.
+  arrange() {
     if (this.fitted) this.overview();
     this.writeCaptions();
-    this.draw();  // a canvas of another size is blank, and must not be seen so
+    this.draw();
   }
 
   // Left, bottom, width and height of each pane: beside one another, or on a narrow screen above one another.
@@ -83,7 +93,7 @@ class View {
   show(quantity) {
     this.kinds = quantity.kinds || [quantity.kind];
     this.canvas.parentElement.dataset.panes = this.kinds.length;
-    this.resize();
+    this.arrange();
   }
 
   writeCaptions() {
@@ -108,45 +118,20 @@ class View {
     this.redraw();
   }
 
-  // From the side that the scene's first camera stands on, a little above.
   overview() {
-    const center = this.box.getCenter(new THREE.Vector3());
-    const side = new THREE.Vector3(0.45, 0, 1);
-    if (this.cameras.length > 0) side.fromArray(this.cameras[0].position).sub(center).setY(0);
-    if (!(side.length() > 0)) side.set(0.45, 0, 1);
-    side.normalize().setY(0.5).normalize();
-    this.look(center.clone().addScaledVector(side, this.distanceToFit(center, side)), center, kOverviewField);
+    const [, , width, height] = this.panes()[0];
+    this.look(fromOutside(this.box, this.cameras, width / height));
     this.fitted = true;
   }
 
-  // From the center, along `side`, at which all corners of the scene are in a pane.
-  distanceToFit(center, side) {
-    const [, , width, height] = this.panes()[0];
-    const vertical = Math.tan((kOverviewField * Math.PI) / 360), horizontal = (vertical * width) / height;
-    const turned = new THREE.PerspectiveCamera();
-    turned.position.copy(side);
-    turned.lookAt(0, 0, 0);
-    const unturned = turned.quaternion.clone().conjugate();
-    const {min, max} = this.box, distances = [];
-    for (let corner = 0; corner < 8; ++corner) {
-      const at = new THREE.Vector3(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z);
-      at.sub(center).applyQuaternion(unturned);
-      distances.push(at.z + Math.max(Math.abs(at.x) / horizontal, Math.abs(at.y) / vertical));
-    }
-    return 1.03 * Math.max(...distances);
-  }
-
   lookThrough(camera) {
-    const position = new THREE.Vector3(...camera.position), backward = new THREE.Vector3(...camera.backward);
-    const ahead = Math.max(0.1 * this.box.getSize(new THREE.Vector3()).length(),
-      backward.dot(position.clone().sub(this.box.getCenter(new THREE.Vector3()))));
-    this.look(position, position.clone().addScaledVector(backward, -ahead), (camera.vertical_fov * 180) / Math.PI);
+    this.look(throughCamera(camera, this.box));
     this.fitted = false;
   }
 
-  look(position, target, fieldOfView) {
+  look({position, target, field}) {
     this.camera.position.copy(position);
-    this.camera.fov = fieldOfView;
+    this.camera.fov = field;
     this.controls.target.copy(target);
     this.controls.update();
     this.redraw();

@@ -65,7 +65,7 @@ TEST(ReportPage, AsksNothingOfAnybody) {
     EXPECT_EQ(count_of(loads, page), 0U) << loads;
   }
   for (const char* file : {"page.html", "page.css", "decode.js", "format.js", "surface.js", "markers.js", "layers.js",
-                           "view.js", "panel.js", "tables.js", "plots.js", "dendrogram.js", "main.js"}) {
+                           "framing.js", "view.js", "panel.js", "tables.js", "plots.js", "dendrogram.js", "main.js"}) {
     const std::string_view text = embedded_file(file);
     EXPECT_FALSE(text.empty()) << file;
     for (const char* loads : {"http:", "https:", "src=", "href=", "url(", "import(", "import {", "fetch(",
