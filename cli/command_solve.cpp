@@ -8,6 +8,7 @@
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/solve_options.h"
+#include "cli/usage_error.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -44,6 +45,9 @@ void print_summary(Session& session, const SolveCommand& options, const inverse:
 int run_solve(SolveCommand options) {
   Session session(options.common);
   settle_constraints(options.choices);
+  if (options.choices.constraints.keep_positions && !options.report.empty()) {
+    throw UsageError("--report: solves with --keep-positions have no stages to report (expected no --report)");
+  }
   require_writable(options.output);
   require_writable(beside(options.output, ".json"));
   const LoadedStage stage =

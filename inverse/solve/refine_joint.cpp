@@ -180,6 +180,12 @@ ceres::Solver::Options solver_options(const JointRefinementOptions& options) {
   return o;
 }
 
+// Ceres writes to standard error where it gives up, whatever its options say.
+bool silence_ceres() {
+  FLAGS_minloglevel = google::FATAL;
+  return true;
+}
+
 }  // namespace
 
 JointRefinement refine_joint(const LightResponse& response, const Observations& observations,
@@ -202,8 +208,7 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   double* const parameters = positions.front().data();
   problem.AddParameterBlock(parameters, int(3 * start.size()), new AllowedPositions(response.places(), start.size()));
   problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, parameters);
-  // Ceres writes to standard error where it gives up, whatever its options say.
-  FLAGS_minloglevel = google::FATAL;
+  [[maybe_unused]] static const bool silent = silence_ceres();
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
   for (std::size_t j = 0; j < start.size(); ++j) result.lights[j].position = positions[j];

@@ -68,8 +68,9 @@ json stages_of(const SolveTrace& trace) {
 }
 
 json found_json(const FoundLight& found) {
-  json light = light_json(found.light);
-  light["name"] = found.light.name;
+  const auto& point = std::get<renderer::PointLight>(found.light);  // sought lights are
+  json light = light_json(point);
+  light["name"] = point.name;
   light["contribution"] = found.contribution;
   light["interval_90"] = {{"position", vector_json(found.position_interval)},
                           {"intensity", vector_json(found.intensity_interval)}};

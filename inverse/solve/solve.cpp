@@ -58,12 +58,6 @@ bool ties_lights_together(const SolveProblem& problem) {
   return problem.intensities.any() || problem.places.light_distance > 0;
 }
 
-bool has_rules(const SolveProblem& problem) {
-  const PlaceRules& places = problem.places;
-  return ties_lights_together(problem) || places.surface_distance > 0 || !places.boxes.empty() ||
-         !places.mounts.empty();
-}
-
 std::vector<std::size_t> all_indices(std::size_t count) {
   std::vector<std::size_t> indices(count);
   std::iota(indices.begin(), indices.end(), std::size_t{0});
@@ -190,7 +184,8 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   return joined(beside_surfaces, refined.lights);
 }
 
-// Lights that rules keep from where they belong may shine on receivers that were not among the important ones.
+// Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
+// important ones, and robust weights would not see it.
 LightEstimates refitted_over_many(const JointSearch& search, LightEstimates lights, StageClock& clock) {
   renderer::Lights placed;
   for (const LightEstimate& light : lights) placed.emplace_back(point_light(light));
@@ -240,8 +235,8 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
   const auto at_last = [&] {
     if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
-    const bool kept_away = has_rules(search.problem) && polished.error > kFarFromTarget;
-    if (kept_away || ties_lights_together(search.problem))
+    const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
+    if (far || ties_lights_together(search.problem))
       return refitted_over_many(search, joined(beside_surfaces, polished.lights), clock);
     return refined_over_many(search, polished.lights, beside_surfaces, clock);
   };

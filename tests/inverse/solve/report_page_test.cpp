@@ -36,8 +36,9 @@ struct SmallSolve {
     target.illumination = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
     target.weight = {1, 1, 0.5F};
     result.illumination = target.illumination;
-    result.lights = {{{"light1", {0.5F, 1, 0.5F}, {3, 2, 1}}, 1, {0.1F, renderer::kInfinity, 0.1F}, {1, 1, 1}}};
-    result.error_curve = {{{result.lights[0].light}, 0.25}};
+    const renderer::PointLight light{"light1", {0.5F, 1, 0.5F}, {3, 2, 1}};
+    result.lights = {{light, 1, {0.1F, renderer::kInfinity, 0.1F}, {1, 1, 1}}};
+    result.error_curve = {{{light}, 0.25}};
     result.stages = {{"polish", 1.5, {{"relative_l2", 0.125}}}};
   }
 
