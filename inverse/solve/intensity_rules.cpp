@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "inverse/numerics/bounded_least_squares.h"
-#include "inverse/numerics/nnls.h"
+#include "inverse/numerics/working_set_nnls.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/blackbody.h"
 #include "renderer/core/control.h"
@@ -16,7 +16,7 @@
 namespace chiaro::inverse {
 namespace {
 
-using Channels = std::array<NormalEquations, 3>;
+using Systems = std::array<WeightedSystem, 3>;
 using Eigen::Index;
 using Eigen::MatrixX3d;
 using Eigen::Vector3d;
@@ -34,22 +34,47 @@ double largest_float_up_to(double limit) {
   return double(double(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded);
 }
 
-MatrixX3d each_channel_by_itself(const Channels& channels, double upper, IntensityFit& fit) {
-  const Index n = channels[0].atb.size();
-  MatrixX3d intensity(n, 3);
-  std::array<double, 3> kkt{};
-  std::array<int, 3> iterations{};
-  renderer::parallel_for(3, [&](std::size_t c) {
-    if (std::isinf(upper)) {
-      const numerics::NnlsResult r = numerics::nnls(channels[c].gram, channels[c].atb);
-      intensity.col(Index(c)) = r.x, kkt[c] = r.kkt_residual, iterations[c] = r.iterations;
-    } else {
-      const auto r = numerics::bounded_least_squares(channels[c].gram, channels[c].atb, VectorXd::Constant(n, upper));
-      intensity.col(Index(c)) = r.x, kkt[c] = r.kkt_residual, iterations[c] = r.iterations;
-    }
-  });
-  fit.kkt_residual = *std::max_element(kkt.begin(), kkt.end());
-  fit.iterations = iterations[0] + iterations[1] + iterations[2];
+// Of one channel.
+struct NormalEquations {
+  Eigen::MatrixXd gram;  // AᵀA
+  VectorXd atb;          // Aᵀb
+};
+using Channels = std::array<NormalEquations, 3>;
+
+Channels normal_equations(const Systems& systems) {
+  Channels channels;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Eigen::MatrixXd& a = systems[c].a;
+    channels[c] = {Eigen::MatrixXd::Zero(a.cols(), a.cols()), a.transpose() * systems[c].b};
+    channels[c].gram.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
+    channels[c].gram.triangularView<Eigen::StrictlyUpper>() = channels[c].gram.transpose();
+  }
+  return channels;
+}
+
+MatrixX3d each_channel_by_itself(const Systems& systems, IntensityFit& fit) {
+  std::array<numerics::NnlsResult, 3> results;
+  renderer::parallel_for(3,
+                         [&](std::size_t c) { results[c] = numerics::working_set_nnls(systems[c].a, systems[c].b); });
+  MatrixX3d intensity(systems[0].a.cols(), 3);
+  for (Index c = 0; c < 3; ++c) {
+    intensity.col(c) = results[std::size_t(c)].x;
+    fit.kkt_residual = std::max(fit.kkt_residual, results[std::size_t(c)].kkt_residual);
+    fit.iterations += results[std::size_t(c)].iterations;
+  }
+  return intensity;
+}
+
+MatrixX3d each_channel_up_to(const Channels& channels, double upper, IntensityFit& fit) {
+  MatrixX3d intensity(channels[0].atb.size(), 3);
+  for (Index c = 0; c < 3; ++c) {
+    const NormalEquations& channel = channels[std::size_t(c)];
+    const auto r =
+        numerics::bounded_least_squares(channel.gram, channel.atb, VectorXd::Constant(channel.atb.size(), upper));
+    intensity.col(c) = r.x;
+    fit.kkt_residual = std::max(fit.kkt_residual, r.kkt_residual);
+    fit.iterations += r.iterations;
+  }
   return intensity;
 }
 
@@ -84,19 +109,18 @@ double best_mired(const std::array<double, 2>& kelvin, const Cost& cost) {
 
 class RuledColors {
  public:
-  RuledColors(const Channels& channels, const IntensityRules& rules)
-      : channels_(channels),
+  RuledColors(Channels channels, const IntensityRules& rules)
+      : channels_(std::move(channels)),
         rules_(rules),
         upper_(largest_float_up_to(rules.max_intensity)),
-        count_(channels[0].atb.size()),
+        count_(channels_[0].atb.size()),
         strength_(VectorXd::Zero(count_)),
         color_(MatrixX3d::Ones(count_, 3)),
         mired_(VectorXd::Zero(count_)) {}
 
   IntensityFit fit() {
     IntensityFit result;
-    const MatrixX3d free = each_channel_by_itself(channels_, std::numeric_limits<double>::infinity(), result);
-    start_from(free);
+    start_from(each_channel_up_to(channels_, std::numeric_limits<double>::infinity(), result));
     double cost = std::numeric_limits<double>::infinity();
     for (int turn = 0; turn < kTurns; ++turn) {
       fit_strengths();
@@ -220,7 +244,7 @@ class RuledColors {
     return ways;
   }
 
-  const Channels& channels_;
+  Channels channels_;
   const IntensityRules& rules_;
   double upper_;
   Index count_;
@@ -231,11 +255,13 @@ class RuledColors {
 
 }  // namespace
 
-IntensityFit fit_intensities(const Channels& channels, const IntensityRules& rules) {
-  if (channels[0].atb.size() == 0) return {};
-  if (rules.color_is_ruled()) return RuledColors(channels, rules).fit();
+IntensityFit fit_intensities(const Systems& systems, const IntensityRules& rules) {
+  if (systems[0].a.cols() == 0) return {};
+  if (rules.color_is_ruled()) return RuledColors(normal_equations(systems), rules).fit();
   IntensityFit fit;
-  const MatrixX3d found = each_channel_by_itself(channels, largest_float_up_to(rules.max_intensity), fit);
+  const MatrixX3d found =
+      rules.any() ? each_channel_up_to(normal_equations(systems), largest_float_up_to(rules.max_intensity), fit)
+                  : each_channel_by_itself(systems, fit);
   for (Index j = 0; j < found.rows(); ++j) fit.intensity.emplace_back(found.row(j).transpose().array());
   return fit;
 }

@@ -20,9 +20,9 @@ struct IntensityRules {
 };
 
 // Of the lights' intensities in one colour channel.
-struct NormalEquations {
-  Eigen::MatrixXd gram;  // AᵀA, columns of A are those of unity lights
-  Eigen::VectorXd atb;   // Aᵀb
+struct WeightedSystem {
+  Eigen::MatrixXd a;  // columns of unity lights
+  Eigen::VectorXd b;  // what is wanted
 };
 
 struct IntensityFit {
@@ -34,6 +34,6 @@ struct IntensityFit {
 };
 
 // Least squares, intensities ≥ 0, over all channels.
-IntensityFit fit_intensities(const std::array<NormalEquations, 3>& channels, const IntensityRules& rules);
+IntensityFit fit_intensities(const std::array<WeightedSystem, 3>& channels, const IntensityRules& rules);
 
 }  // namespace chiaro::inverse

@@ -91,18 +91,15 @@ double relative_error(const Observations& observations, const Column& illuminati
 }
 
 IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns) {
-  const auto n = Eigen::Index(columns.size());
-  std::array<NormalEquations, 3> channels;
+  std::array<WeightedSystem, 3> channels;
   renderer::parallel_for(3, [&](std::size_t channel) {
     const auto c = Eigen::Index(channel);
-    Eigen::MatrixXd a(observations.wanted.rows(), n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      a.col(j) = observations.sqrt_weight.cwiseProduct(columns[std::size_t(j)].col(c));
+    WeightedSystem& system = channels[channel];
+    system.a.resize(observations.wanted.rows(), Eigen::Index(columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      system.a.col(Eigen::Index(j)) = observations.sqrt_weight.cwiseProduct(columns[j].col(c));
     }
-    Eigen::MatrixXd& gram = channels[channel].gram = Eigen::MatrixXd::Zero(n, n);
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
-    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-    channels[channel].atb = a.transpose() * observations.sqrt_weight.cwiseProduct(observations.wanted.col(c));
+    system.b = observations.sqrt_weight.cwiseProduct(observations.wanted.col(c));
   });
   return fit_intensities(channels, observations.rules);
 }

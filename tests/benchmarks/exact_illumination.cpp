@@ -23,7 +23,7 @@ ExactIllumination::ExactIllumination(const Stage& stage)
 double ExactIllumination::error(const std::vector<PointLight>& truth,
                                 const std::vector<inverse::FoundLight>& found) const {
   std::vector<PointLight> lights;
-  for (const inverse::FoundLight& light : found) lights.push_back(light.light);
+  for (const inverse::FoundLight& light : found) lights.push_back(std::get<renderer::PointLight>(light.light));
   const std::vector<Vec3f> wanted = illumination(truth), got = illumination(lights);
   double difference = 0, norm = 0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {

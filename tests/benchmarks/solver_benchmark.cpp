@@ -79,7 +79,7 @@ Distances match(const std::vector<PointLight>& truth, const std::vector<FoundLig
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     for (std::size_t j = 0; j < found.size(); ++j) {
-      pairs.push_back({length(truth[i].position - found[j].light.position), i, j});
+      pairs.push_back({length(truth[i].position - std::get<PointLight>(found[j].light).position), i, j});
     }
   }
   std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
@@ -91,11 +91,13 @@ Distances match(const std::vector<PointLight>& truth, const std::vector<FoundLig
     distances.position.push_back(double(pair.distance / diagonal));
     const FoundLight& light = found[pair.found];
     const Vec3f wanted = truth[pair.truth].intensity;
-    distances.intensity.push_back(double(length(light.light.intensity - wanted) / length(wanted)));
+    distances.intensity.push_back(
+        double(length(std::get<PointLight>(light.light).intensity - wanted) / length(wanted)));
     for (int a = 0; a < 3; ++a) {
-      const float off = std::abs(light.light.position[a] - truth[pair.truth].position[a]);
+      const float off = std::abs(std::get<PointLight>(light.light).position[a] - truth[pair.truth].position[a]);
       distances.inside += off <= light.position_interval[a] ? 1 : 0;
-      distances.inside += std::abs(light.light.intensity[a] - wanted[a]) <= light.intensity_interval[a] ? 1 : 0;
+      distances.inside +=
+          std::abs(std::get<PointLight>(light.light).intensity[a] - wanted[a]) <= light.intensity_interval[a] ? 1 : 0;
       distances.parameters += 2;
     }
   }
