@@ -9,6 +9,7 @@
 #include "cli/program.h"
 #include "cli/solve_options.h"
 #include "cli/usage_error.h"
+#include "inverse/solve/error_curve_file.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -17,7 +18,7 @@ namespace {
 struct SolveCommand {
   CommonOptions common;
   SolveChoices choices;
-  std::string scene, cache, report, output;
+  std::string scene, cache, report, from, output;
 };
 
 // The report's folder is made after the inputs are found to be good.
@@ -42,12 +43,21 @@ void print_summary(Session& session, const SolveCommand& options, const inverse:
   session.finish(solve_summary(result), solve_text(result) + written);
 }
 
+void refuse_what_excludes_each_other(const SolveCommand& options) {
+  const bool in_place = options.choices.constraints.keep_positions;
+  if (in_place && !options.report.empty()) {
+    throw UsageError("--report: solves with --keep-positions have no stages to report (expected no --report)");
+  }
+  if (in_place && !options.from.empty()) throw UsageError("--from and --keep-positions exclude each other");
+  if (options.choices.solve.method == inverse::SolveMethod::kThesis && !options.from.empty()) {
+    throw UsageError("--from: --method thesis begins from its bake alone (expected joint)");
+  }
+}
+
 int run_solve(SolveCommand options) {
   Session session(options.common);
   settle_constraints(options.choices);
-  if (options.choices.constraints.keep_positions && !options.report.empty()) {
-    throw UsageError("--report: solves with --keep-positions have no stages to report (expected no --report)");
-  }
+  refuse_what_excludes_each_other(options);
   require_writable(options.output);
   require_writable(beside(options.output, ".json"));
   const LoadedStage stage =
@@ -57,7 +67,8 @@ int run_solve(SolveCommand options) {
   session.stop_if_interrupted();
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   use_cache(options, problem);
-  const inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
+  inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
+  if (!options.from.empty()) solving.earlier = inverse::load_error_curve(options.from);
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   save_found_lights(options.scene, result, options.output, options.choices.constraints.keep_lights);
   print_summary(session, options, result);
@@ -74,12 +85,18 @@ CommandRun add_solve(CLI::App& command) {
              options->output, {".glb", ".gltf"});
   add_solve_options(command, options->choices);
   add_text(command, {"--cache", "C.exr", "A transport cache; without one solve bakes by itself"}, options->cache);
+  add_text(command,
+           {"--from", "SOLVE.json",
+            "The summary (--json) of another solve of this target: its lights are refined and no others looked for, as "
+            "for another --lights N"},
+           options->from);
   add_text(command, {"--report", "DIR", "Write what each stage found into this folder"}, options->report);
   add_common_options(command, options->common);
   command.get_option("--grid")->excludes("--cache");
   set_examples(command,
                "  chiaro solve room.glb --target painted.glb --cache room.exr -o lights.glb\n"
-               "  chiaro solve room.glb --target painted.glb -o lights.glb --max-lights 5 --report report");
+               "  chiaro solve room.glb --target painted.glb -o lights.glb --max-lights 5 --report report\n"
+               "  chiaro solve room.glb --target painted.glb -o three.glb --from solve.json --lights 3");
   return [options] { return run_solve(*options); };
 }
 

@@ -34,9 +34,14 @@ class Search {
       : response_(response), observations_(observations), tree_(tree), options_(options), start_(Clock::now()) {}
 
   LightCountResult run() {
-    refine_cuts();
-    insert_lights();
-    eliminate_lights();
+    if (options_.earlier.empty()) {
+      refine_cuts();
+      insert_lights();
+      eliminate_lights();
+    }
+    for (const LightEstimates& lights : options_.earlier) {
+      if (!out_of_time()) consider({lights});
+    }
     return result();
   }
 

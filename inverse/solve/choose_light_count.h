@@ -13,10 +13,11 @@ namespace chiaro::inverse {
 
 struct LightCountOptions {
   int max_lights = 32;
-  int exact_lights = 0;                  // 0: chosen here
-  double time_limit = 0;                 // seconds; 0: none
-  const ExactIndirect* exact = nullptr;  // sets that come close are judged by it; absent: by interpolated light alone
-  const HeldOut* held_out = nullptr;     // tell how many lights there are; absent: the error of the fit does
+  int exact_lights = 0;                   // 0: chosen here
+  double time_limit = 0;                  // seconds; 0: none
+  const ExactIndirect* exact = nullptr;   // sets that come close are judged by it; absent: by interpolated light alone
+  const HeldOut* held_out = nullptr;      // tell how many lights there are; absent: the error of the fit does
+  std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for
 };
 
 struct LightCountResult {

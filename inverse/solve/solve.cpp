@@ -196,6 +196,32 @@ LightEstimates refitted_over_many(const JointSearch& search, LightEstimates ligh
   return lights;
 }
 
+// Those of the number asked for, or no more than that.
+std::vector<LightEstimates> earlier_sets(const SolveOptions& options) {
+  std::vector<LightEstimates> sets;
+  for (const LightSet& set : options.earlier) {
+    const int count = int(set.lights.size());
+    if (count > options.max_lights || (options.exact_lights > 0 && count != options.exact_lights)) continue;
+    LightEstimates& lights = sets.emplace_back();
+    for (const renderer::PointLight& light : set.lights) {
+      lights.push_back({to_eigen(light.position), to_eigen(light.intensity).array()});
+    }
+  }
+  return sets;
+}
+
+// A light that would do nothing is the half of another that stands where it stood.
+LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
+  while (!lights.empty() && lights.size() < count) {
+    const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
+      return a.intensity.sum() < b.intensity.sum();
+    });
+    brightest->intensity /= 2;
+    lights.push_back(*brightest);
+  }
+  return lights;
+}
+
 Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
                          StageClock& clock) {
   const SolveOptions& options = search.options;
@@ -210,8 +236,12 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const LightEstimates start = joined(beside_surfaces, cut.lights);
   remaining.rules = search.problem.intensities;
 
-  const LightCountOptions count_options{options.max_lights - already, std::max(0, options.exact_lights - already),
-                                        options.time_limit, &search.exact, search.held_out};
+  const LightCountOptions count_options{options.max_lights - already,
+                                        std::max(0, options.exact_lights - already),
+                                        options.time_limit,
+                                        &search.exact,
+                                        search.held_out,
+                                        earlier_sets(options)};
   const auto find_the_rest = [&] {
     if (already >= most_lights(options)) return LightCountResult{};
     return choose_light_count(response, remaining, tree, count_options);
@@ -241,7 +271,9 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
     return refined_over_many(search, polished.lights, beside_surfaces, clock);
   };
   const LightEstimates all = at_last();
-  return {options.exact_lights > 0 ? all : without_negligible(response, search.judged, all), start,
+  const bool may_share_places = !(search.problem.places.light_distance > 0);
+  const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
+  return {options.exact_lights > 0 ? exactly : without_negligible(response, search.judged, all), start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more",
@@ -269,6 +301,16 @@ AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid)
                "a smaller distance to surfaces, or a larger region"});
 }
 
+void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
+  if (options.earlier.empty() || !earlier_sets(options).empty()) return;
+  std::vector<std::size_t> counts;
+  for (const LightSet& set : options.earlier) counts.push_back(set.lights.size());
+  throw Error(
+      {problem.tracer.scene().path, "earlier solve",
+       fmt::format("has no set of {} lights", options.exact_lights > 0 ? options.exact_lights : options.max_lights),
+       fmt::format("one of {}", fmt::join(counts, ", "))});
+}
+
 // As many as asked for, where rules keep lights apart.
 void require_all_lights(const SolveProblem& problem, const SolveOptions& options, std::size_t found) {
   const bool too_few = found == 0 || int(found) < options.exact_lights;
@@ -285,6 +327,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   StageClock clock;
   SolveResult result;
   check_target(problem);
+  check_earlier(problem, options);
   if (!problem.lights_in_place.empty()) return fit_in_place(problem, options, control);
 
   const Importance importance = choose_important_vertices(
@@ -315,7 +358,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   if (joint) {
     exact.emplace(problem.tracer, samples, transport.cache.settings);
     clock.finish("exact_indirect", {});
-    if (!ties_lights_together(problem)) {
+    if (options.earlier.empty() && !ties_lights_together(problem)) {
       beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
     }
     searched = published.noise > 0 ? weighted_by_noise(published, transport.cache.indirect_relative_error)

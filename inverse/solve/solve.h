@@ -21,6 +21,12 @@ enum class SolveMethod : std::uint8_t {
   kJoint,   // its front end, then a joint refinement of all positions and intensities (the default)
 };
 
+// The best set of its size that a solve came by.
+struct LightSet {
+  std::vector<renderer::PointLight> lights;
+  double relative_l2 = 0;  // (3.6) over the important vertices
+};
+
 struct SolveOptions {
   SolveMethod method = SolveMethod::kJoint;
   int important_vertices = 1000;
@@ -33,6 +39,7 @@ struct SolveOptions {
   int verification_samples =
       0;  // paths per receiver of the final, fresh evaluation; 0: 16 to 1024 by the number of receivers
   std::uint64_t seed = 0;
+  std::vector<LightSet> earlier;        // of another solve of the same: nothing is searched, they are only refined
   std::filesystem::path report_folder;  // empty: none; what each stage found is written there (report.h)
 };
 
@@ -40,12 +47,6 @@ struct FoundLight {
   renderer::Light light;
   double contribution = 0;                      // ‖its illumination‖ / Σ over all found
   Vec3f position_interval, intensity_interval;  // half widths of 90 % intervals: metres, candela (or lux)
-};
-
-// The best set of its size that a solve came by.
-struct LightSet {
-  std::vector<renderer::PointLight> lights;
-  double relative_l2 = 0;  // (3.6) over the important vertices
 };
 
 struct StageReport {
