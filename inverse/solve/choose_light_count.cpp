@@ -20,12 +20,14 @@ constexpr double kNearNoise = 5;       // times the noise, or less: little else 
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
 constexpr double kClose = 0.3;         // error from which on interpolated indirect light is not good enough
-constexpr double kLeastGain = 0.02;    // of the error, by a light that is there
+constexpr double kLeastGain = 0.01;    // of the error, by a light that is there
 constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
 constexpr std::size_t kMostSplits = 3;
 constexpr double kStill = 5e-4;  // of the region's diagonal: indirect light hardly changes
 // Beyond that descents go on from one shadow edge to the next.
 constexpr JointRefinementOptions kSearching{.max_iterations = 15, .function_tolerance = 1e-3};
+constexpr JointRefinementOptions kToTheEnd{.max_iterations = 60, .function_tolerance = 1e-5};
+constexpr std::size_t kMostParents = 3;  // sets with one light less, descended to the end
 
 class Search {
  public:
@@ -38,6 +40,7 @@ class Search {
       refine_cuts();
       insert_lights();
       eliminate_lights();
+      confirm_count();
     }
     for (const LightEstimates& lights : options_.earlier) {
       if (!out_of_time()) consider({lights});
@@ -60,23 +63,22 @@ class Search {
   }
 
   // Refines them and keeps the best, if none of its size was better, without the lights that went out.
-  void consider(const std::vector<LightEstimates>& starts) {
+  void consider(const std::vector<LightEstimates>& starts, const JointRefinementOptions& how = kSearching) {
     std::vector<JointRefinement> refined(starts.size());
-    renderer::parallel_for(starts.size(), [&](std::size_t k) {
-      refined[k] = refine_joint(response_, observations_, starts[k], kSearching);
-    });
+    renderer::parallel_for(starts.size(),
+                           [&](std::size_t k) { refined[k] = refine_joint(response_, observations_, starts[k], how); });
     refinements_ += int(starts.size());
     const auto best = std::min_element(refined.begin(), refined.end(),
                                        [](const auto& a, const auto& b) { return a.error < b.error; });
     if (best == refined.end()) return;
-    if (options_.exact != nullptr && best->error < kClose) refine_exactly(*best);
+    if (options_.exact != nullptr && best->error < kClose) refine_exactly(*best, how);
     keep(std::move(*best));
   }
 
   // Between the lights of a grid indirect light is known less well than targets are.
-  void refine_exactly(JointRefinement& refined) {
+  void refine_exactly(JointRefinement& refined, const JointRefinementOptions& how) {
     options_.exact->correct(response_, refined.lights, kStill * double(response_.grid().region.diagonal()));
-    refined = refine_joint(response_, observations_, refined.lights, kSearching);
+    refined = refine_joint(response_, observations_, refined.lights, how);
   }
 
   void keep(JointRefinement refined) {
@@ -152,16 +154,35 @@ class Search {
   // From the largest set down: without each light in turn, intensities refitted, the best of them refined.
   void eliminate_lights() {
     for (std::size_t size = best_.size() - 1; size > 1 && !out_of_time(); --size) {
-      if (best_[size].lights.empty()) continue;
-      const LightEstimates& all = best_[size].lights;
-      const std::vector<Column> columns = evaluate_columns(response_, all, Evaluation::kTracedVisibility);
-      Candidate least;
-      for (std::size_t without = 0; without < all.size(); ++without) {
-        Candidate c = refitted_without(all, columns, without);
-        if (c.error < least.error) least = std::move(c);
-      }
-      consider({least.lights});
+      if (!best_[size].lights.empty()) consider(parents(best_[size].lights, 1));
     }
+  }
+
+  // A light may be there only to make good what the descent of the others left undone: with one light less, and down to
+  // the end, it may not be missed.
+  void confirm_count() {
+    if (options_.exact_lights > 0 || best_.size() < 2) return;
+    for (std::size_t size = best_size(); size > 1 && !out_of_time(); --size) {
+      consider({best_[size].lights}, kToTheEnd);
+      std::vector<LightEstimates> smaller = parents(best_[size].lights, kMostParents);
+      if (!best_[size - 1].lights.empty()) smaller.push_back(best_[size - 1].lights);
+      consider(smaller, kToTheEnd);
+      if (best_size() >= size) return;
+    }
+  }
+
+  // Without one light each; those of the least errors.
+  std::vector<LightEstimates> parents(const LightEstimates& all, std::size_t most) const {
+    const std::vector<Column> columns = evaluate_columns(response_, all, Evaluation::kTracedVisibility);
+    std::vector<Candidate> candidates;
+    for (std::size_t without = 0; without < all.size(); ++without) {
+      candidates.push_back(refitted_without(all, columns, without));
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
+    std::vector<LightEstimates> sets;
+    for (std::size_t k = 0; k < std::min(most, candidates.size()); ++k) sets.push_back(candidates[k].lights);
+    return sets;
   }
 
   Candidate refitted_without(LightEstimates lights, std::vector<Column> columns, std::size_t without) const {

@@ -35,6 +35,7 @@ constexpr std::size_t kMany = 50000;              // … of so many at most
 constexpr double kExplained = 1.5;      // times the noise of the target, or less: more receivers hardly tell more
 constexpr double kFarFromTarget = 0.1;  // error, where rules keep lights from where they belong
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
+constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 constexpr double kOnSurface = 0.5;      // of a target's receivers must lie on the scene
 
 void check_target(const SolveProblem& problem) {
@@ -126,14 +127,17 @@ int most_lights(const SolveOptions& options) {
   return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
 }
 
-// Without the lights that the last descent left with less than what anybody sees of them; one always stays.
+// Without the lights that the last descent left with less than what anybody sees of them, and those that make good
+// what is wrong with one receiver, and stand no one can tell where; one always stays.
 LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
                                   const LightEstimates& lights) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
+  const std::vector<LightInterval> intervals = light_intervals(response, judged, lights);
   LightEstimates kept;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
-    if (norm > kNegligible * judged.target_norm) kept.push_back(lights[j]);
+    const bool nowhere = !intervals[j].position.array().isFinite().any();
+    if (norm > (nowhere ? kHardlySeen : kNegligible) * judged.target_norm) kept.push_back(lights[j]);
   }
   return kept.empty() ? lights : kept;
 }
