@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "cli/solve_options.h"
@@ -5,6 +7,8 @@
 
 namespace chiaro::cli {
 namespace {
+
+constexpr double kMostPercent = 10;  // times what was wanted: more is not told in percent
 
 // As in a light file.
 JsonObject light_fields(const renderer::PointLight& light) {
@@ -43,6 +47,27 @@ JsonObject curve_point(const inverse::LightSet& set) {
     lights.emplace_back(JsonObject{{"type", "point"}, {"position", light.position}, {"intensity", light.intensity}});
   }
   return {{"light_count", set.lights.size()}, {"relative_l2", set.relative_l2}, {"lights", lights}};
+}
+
+JsonObject place_summary(const inverse::NotReached& place) {
+  JsonObject summary{{"node", place.node}, {"position", place.position}, {"share_of_error", place.share}};
+  if (place.wanted > 0) summary.emplace_back("relative_excess", place.excess / place.wanted);
+  return summary;
+}
+
+// "back wall near 1.2 0.8 -3 m is 62 % too dark (41 % of the error)"
+std::string text_of_place(const inverse::NotReached& place) {
+  const std::string by = place.wanted > 0 && std::abs(place.excess) < kMostPercent * place.wanted
+                             ? text_of_percent(std::abs(place.excess) / place.wanted) + " too "
+                             : "far too ";
+  return fmt::format("{} near {} m is {}{} ({} of the error)", place.node, text_of_vector(place.position), by,
+                     place.excess < 0 ? "dark" : "bright", text_of_percent(place.share));
+}
+
+std::string text_of_places(const std::vector<inverse::NotReached>& places) {
+  std::vector<std::string> texts;
+  for (const inverse::NotReached& place : places) texts.push_back(text_of_place(place));
+  return fmt::format("{}", fmt::join(texts, "; "));
 }
 
 JsonObject stage_summary(const inverse::StageReport& stage) {
@@ -87,7 +112,9 @@ std::string light_table(const std::vector<inverse::FoundLight>& lights) {
 }  // namespace
 
 JsonObject solve_summary(const inverse::SolveResult& result) {
-  JsonList lights, curve, stages;
+  JsonList lights, curve, stages, places, pairs;
+  for (const inverse::NotReached& place : result.not_reached) places.emplace_back(place_summary(place));
+  for (const auto& [one, other] : result.not_told_apart) pairs.emplace_back(JsonList{Json(one), Json(other)});
   for (const inverse::FoundLight& found : result.lights) lights.emplace_back(light_summary(found));
   for (const inverse::LightSet& set : result.error_curve) curve.emplace_back(curve_point(set));
   for (const inverse::StageReport& stage : result.stages) stages.emplace_back(stage_summary(stage));
@@ -104,6 +131,9 @@ JsonObject solve_summary(const inverse::SolveResult& result) {
           {"stages", stages},
           {"important_vertices", result.important_vertices},
           {"target_noise", result.target_noise},
+          {"not_told_apart", pairs},
+          {"not_reached", places},
+          {"advice", result.advice},
           {"termination", result.termination}};
 }
 
@@ -114,6 +144,11 @@ std::string solve_text(const inverse::SolveResult& result) {
   rows.emplace_back("noise of the fresh trace", text_of_percent(result.verification_noise));
   if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
   if (!result.error_curve.empty()) rows.emplace_back("by number of lights", text_of_curve(result.error_curve));
+  for (const auto& [one, other] : result.not_told_apart) {
+    rows.emplace_back("not told apart", fmt::format("lights {} and {}: only their sum is known", one, other));
+  }
+  if (!result.not_reached.empty()) rows.emplace_back("not reached", text_of_places(result.not_reached));
+  if (!result.advice.empty()) rows.emplace_back("advice", result.advice);
   rows.emplace_back("ended", result.termination);
   for (const inverse::StageReport& stage : result.stages) rows.emplace_back(stage.name, text_of_seconds(stage.seconds));
   rows.emplace_back("total", text_of_seconds(result.total_seconds));

@@ -1,5 +1,6 @@
 #include "inverse/solve/light_intervals.h"
 
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int kParameters = 6;      // of a light: x, y, z, red, green, blue
 constexpr double kNinety = 1.645;   // standard deviations to either side
+constexpr double kOpposed = 0.9;    // correlation, and less than its negative: one makes good what the other lacks
 constexpr double kUnknown = 1e-10;  // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
 
 std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
@@ -36,28 +38,42 @@ Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const L
   return j;
 }
 
-// Variances of the parameters; infinite where the normal matrix tells nothing.
-Eigen::VectorXd variances(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& scatter) {
+// Covariance of the parameters; variances are infinite where the normal matrix tells nothing.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& scatter) {
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * normal * scale.asDiagonal());
   const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double e) { return e > kUnknown ? 1 / e : 0; });
   const Eigen::MatrixXd solved =
       eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
-  Eigen::VectorXd variance = (solved * scatter * solved.transpose()).diagonal().cwiseProduct(scale.cwiseAbs2());
-  for (Eigen::Index k = 0; k < variance.size(); ++k) {
+  Eigen::MatrixXd covariance = scale.asDiagonal() * (solved * scatter * solved.transpose()) * scale.asDiagonal();
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
     double known = scale[k] > 0 ? 1 : 0;
     for (Eigen::Index e = 0; e < inverse.size(); ++e) {
       if (inverse[e] <= 0) known -= eigen.eigenvectors()(k, e) * eigen.eigenvectors()(k, e);
     }
-    if (known < 0.5) variance[k] = std::numeric_limits<double>::infinity();
+    if (known < 0.5) covariance(k, k) = std::numeric_limits<double>::infinity();
   }
-  return variance;
+  return covariance;
+}
+
+// What one light has more the other has less, by as much as they shine.
+bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimates& lights, std::size_t j,
+                           std::size_t k) {
+  for (int c = 0; c < 3; ++c) {
+    const auto a = Eigen::Index(kParameters * j + 3) + c, b = Eigen::Index(kParameters * k + 3) + c;
+    const double one = std::sqrt(covariance(a, a)), other = std::sqrt(covariance(b, b));
+    if (std::isinf(one) && std::isinf(other)) return true;
+    const bool opposed = covariance(a, b) < -kOpposed * one * other;
+    const double dimmer = std::min(lights[j].intensity[c], lights[k].intensity[c]);
+    if (opposed && kNinety * std::min(one, other) > dimmer) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-std::vector<LightInterval> light_intervals(const LightResponse& response, const Observations& observations,
-                                           const LightEstimates& lights) {
+LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
+                               const LightEstimates& lights) {
   if (lights.empty()) return {};
   const std::vector<ColumnWithGradient> columns = columns_of(response, lights);
   const auto parameters = Eigen::Index(kParameters * lights.size());
@@ -73,11 +89,17 @@ std::vector<LightInterval> light_intervals(const LightResponse& response, const 
   }
   // What the fit has taken up of the noise.
   const double freedom = double(3 * weight.size()) / std::max(1.0, double(3 * weight.size() - parameters));
-  const Eigen::VectorXd variance = variances(normal, freedom * pull.transpose() * pull);
-  std::vector<LightInterval> intervals;
+  const Eigen::MatrixXd covariance = covariance_of(normal, freedom * pull.transpose() * pull);
+  LightIntervals intervals;
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    const Eigen::VectorXd half = kNinety * variance.segment<kParameters>(Eigen::Index(kParameters * l)).cwiseSqrt();
-    intervals.push_back({half.head<3>(), half.tail<3>()});
+    const Eigen::VectorXd half =
+        kNinety * covariance.diagonal().segment<kParameters>(Eigen::Index(kParameters * l)).cwiseSqrt();
+    intervals.lights.push_back({half.head<3>(), half.tail<3>()});
+  }
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    for (std::size_t k = j + 1; k < lights.size(); ++k) {
+      if (only_the_sum_is_known(covariance, lights, j, k)) intervals.confounded.emplace_back(j, k);
+    }
   }
   return intervals;
 }

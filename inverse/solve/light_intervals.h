@@ -10,12 +10,17 @@ struct LightInterval {
   Eigen::Array3d intensity;  // candela per channel
 };
 
+struct LightIntervals {
+  std::vector<LightInterval> lights;                            // in their order
+  std::vector<std::pair<std::size_t, std::size_t>> confounded;  // only the sum of both intensities is known
+};
+
 // How sure the least-squares lights are, from derivatives at fixed visibility and from what the fit leaves, which holds
-// the noise of the target and the errors of transport alike; no noise need be known. One per light, in their order.
-// Infinite where receivers tell nothing of a parameter.
+// the noise of the target and the errors of transport alike; no noise need be known. Infinite
+// where receivers tell nothing of a parameter.
 // Source: White, A heteroskedasticity-consistent covariance matrix estimator and a direct test for heteroskedasticity,
 // 1980; a receiver's channels count as one cluster.
-std::vector<LightInterval> light_intervals(const LightResponse& response, const Observations& observations,
-                                           const LightEstimates& lights);
+LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
+                               const LightEstimates& lights);
 
 }  // namespace chiaro::inverse

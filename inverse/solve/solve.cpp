@@ -76,8 +76,8 @@ std::unique_ptr<HeldOut> hold_out(const SolveProblem& problem, BakeSettings sett
 }
 
 // Brightest contribution first.
-std::vector<FoundLight> found_lights(const LightResponse& response, const Observations& observations,
-                                     const LightEstimates& lights) {
+void report_lights(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
+                   SolveResult& result) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   std::vector<double> norm;
   for (std::size_t j = 0; j < lights.size(); ++j) {
@@ -86,15 +86,16 @@ std::vector<FoundLight> found_lights(const LightResponse& response, const Observ
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
   std::vector<std::size_t> order = all_indices(lights.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
-  const std::vector<LightInterval> intervals = light_intervals(response, observations, lights);
-  std::vector<FoundLight> found;
+  const LightIntervals intervals = light_intervals(response, observations, lights);
+  std::vector<int> number(lights.size());
   for (const std::size_t j : order) {
     renderer::PointLight light = point_light(lights[j]);
-    light.name = fmt::format("light{}", found.size() + 1);
-    found.push_back(
-        {light, norm[j] / total, to_vec3f(intervals[j].position), to_vec3f(intervals[j].intensity.matrix())});
+    number[j] = int(result.lights.size()) + 1;
+    light.name = fmt::format("light{}", number[j]);
+    result.lights.push_back({light, norm[j] / total, to_vec3f(intervals.lights[j].position),
+                             to_vec3f(intervals.lights[j].intensity.matrix())});
   }
-  return found;
+  for (const auto& [j, k] : intervals.confounded) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
 }
 
 struct Optimum {
@@ -132,7 +133,7 @@ int most_lights(const SolveOptions& options) {
 LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
                                   const LightEstimates& lights) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
-  const std::vector<LightInterval> intervals = light_intervals(response, judged, lights);
+  const std::vector<LightInterval> intervals = light_intervals(response, judged, lights).lights;
   LightEstimates kept;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
@@ -392,7 +393,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.optimal_seconds += clock.total() - before;
 
   require_all_lights(problem, options, optimum.lights.size());
-  result.lights = found_lights(response, judged, optimum.lights);
+  report_lights(response, judged, optimum.lights, result);
   result.initial_relative_l2 = relative_error(judged, illumination_of(response, optimum.start));
   result.relative_l2_cached = relative_error(judged, illumination_of(response, optimum.lights));
   result.termination = optimum.termination;

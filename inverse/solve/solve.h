@@ -49,6 +49,15 @@ struct FoundLight {
   Vec3f position_interval, intensity_interval;  // half widths of 90 % intervals: metres, candela (or lux)
 };
 
+// A place where the lights found do not produce the target.
+struct NotReached {
+  std::string node;   // whose surface it is
+  Vec3f position;     // its middle, by the error, metres
+  double share = 0;   // of the squared error of all receivers
+  double excess = 0;  // Σ luminance found − wanted, cd/m², over its receivers: negative where it is too dark …
+  double wanted = 0;  // … and Σ luminance wanted
+};
+
 struct StageReport {
   std::string name;
   double seconds = 0;
@@ -67,6 +76,10 @@ struct SolveResult {
   std::vector<StageReport> stages;
   int important_vertices = 0;
   std::string termination;
+  std::vector<NotReached> not_reached;  // worst first; none where noise explains the error, or nearly so
+  std::string advice;                   // what may help there
+  std::vector<std::pair<int, int>>
+      not_told_apart;               // of lights, by their numbers from 1: of which only the sum is known
   std::vector<Vec3f> illumination;  // of the found lights and the fixed part, traced afresh, per receiver
 };
 

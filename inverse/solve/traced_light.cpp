@@ -1,6 +1,9 @@
 #include "inverse/solve/traced_light.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "inverse/solve/not_reached.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -42,6 +45,9 @@ void verify(const SolveProblem& problem, const SolveOptions& options, const rend
   result.illumination = traced.value;
   result.verification_noise = relative_standard_error(traced);
   result.relative_l2 = relative_l2(traced.value, target.illumination, target.weight);
+  const double noise = std::hypot(result.verification_noise, result.target_noise);
+  result.not_reached = places_not_reached(target, traced.value, noise);
+  result.advice = advice_for(problem, options, result);
 }
 
 }  // namespace chiaro::inverse

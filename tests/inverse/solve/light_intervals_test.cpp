@@ -12,6 +12,7 @@ namespace {
 
 using tests::DirectProblem;
 using tests::known_lights;
+using tests::Vector3d;
 
 constexpr JointRefinementOptions kToTheEnd{.max_iterations = 50, .function_tolerance = 1e-12};
 
@@ -35,7 +36,7 @@ TEST(LightIntervals, HoldTheTruthNineTimesOfTen) {
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
     const Observations noisy = with_noise(problem.observations(), 0.02, trial);
     const LightEstimates lights = refine_joint(problem.response(), noisy, known, kToTheEnd).lights;
-    const std::vector<LightInterval> intervals = light_intervals(problem.response(), noisy, lights);
+    const std::vector<LightInterval> intervals = light_intervals(problem.response(), noisy, lights).lights;
     ASSERT_EQ(intervals.size(), lights.size());
     for (std::size_t j = 0; j < lights.size(); ++j) {
       for (int a = 0; a < 3; ++a) {
@@ -52,8 +53,10 @@ TEST(LightIntervals, HoldTheTruthNineTimesOfTen) {
 TEST(LightIntervals, GrowWithTheNoise) {
   const LightEstimates known = known_lights(1);
   const DirectProblem problem(known);
-  const LightInterval some = light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), known)[0];
-  const LightInterval more = light_intervals(problem.response(), with_noise(problem.observations(), 0.04, 1), known)[0];
+  const LightInterval some =
+      light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), known).lights[0];
+  const LightInterval more =
+      light_intervals(problem.response(), with_noise(problem.observations(), 0.04, 1), known).lights[0];
   EXPECT_TRUE(more.position.isApprox(4 * some.position, 1e-3));
   EXPECT_TRUE(more.intensity.isApprox(4 * some.intensity, 1e-3));
 }
@@ -63,11 +66,25 @@ TEST(LightIntervals, AreInfiniteWhereNothingIsKnown) {
   const DirectProblem problem(lights);
   lights.push_back({{2, 1.5, 2}, Eigen::Array3d::Zero()});  // dark wherever it stands
   const std::vector<LightInterval> intervals =
-      light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), lights);
+      light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), lights).lights;
   EXPECT_TRUE(intervals[0].position.allFinite());
   EXPECT_TRUE(std::isinf(intervals[1].position.minCoeff()));
   EXPECT_TRUE(intervals[1].intensity.allFinite());
-  EXPECT_TRUE(light_intervals(problem.response(), problem.observations(), {}).empty());
+  EXPECT_TRUE(light_intervals(problem.response(), problem.observations(), {}).lights.empty());
+}
+
+TEST(LightIntervals, LightsSideBySideAreNotToldApart) {
+  LightEstimates lights = known_lights(2);
+  const DirectProblem apart(lights);
+  EXPECT_TRUE(light_intervals(apart.response(), with_noise(apart.observations(), 0.01, 1), lights).confounded.empty());
+  lights.push_back(lights[1]);
+  lights[2].position += Vector3d(0.004, 0.003, 0);
+  lights[1].intensity /= 2, lights[2].intensity /= 2;
+  const DirectProblem together(lights);
+  const auto pairs =
+      light_intervals(together.response(), with_noise(together.observations(), 0.01, 1), lights).confounded;
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs[0], (std::pair<std::size_t, std::size_t>{1, 2}));
 }
 
 }  // namespace

@@ -1,0 +1,120 @@
+#include "inverse/solve/not_reached.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "inverse/transport/eigen_vectors.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr double kSeen = 0.05;        // relative L2 beyond noise
+constexpr double kCell = 0.08;        // of the receivers' diagonal: what counts as one place
+constexpr double kLeastShare = 0.05;  // of the squared error
+constexpr std::size_t kMostPlaces = 3;
+constexpr double kAtBorder = 0.005;   // of the region's diagonal
+constexpr double kStillFalls = 0.95;  // of the error, or less, by the last light
+
+// Part, the error's sign, and a cell of space.
+using Cell = std::array<long, 5>;
+
+struct Sums {
+  double squared = 0, wanted = 0, found = 0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+};
+
+std::size_t part_of(const Receivers& receivers, std::size_t receiver) {
+  const auto after =
+      std::upper_bound(receivers.parts.begin(), receivers.parts.end(), receiver,
+                       [](std::size_t i, const Receivers::Part& part) { return i < part.first_receiver; });
+  return std::size_t(std::max<std::ptrdiff_t>(after - receivers.parts.begin() - 1, 0));
+}
+
+std::map<Cell, Sums> sums_by_cell(const Target& target, const std::vector<Vec3f>& illumination) {
+  renderer::Box3f bounds;
+  for (const Vec3f position : target.receivers.positions) bounds.extend(position);
+  const double size = kCell * double(bounds.diagonal());
+  std::map<Cell, Sums> cells;
+  for (std::size_t i = 0; i < illumination.size(); ++i) {
+    const Vec3f position = target.receivers.positions[i], error = illumination[i] - target.illumination[i];
+    const double squared = double(target.weight[i]) * double(length_squared(error));
+    if (!(squared > 0)) continue;
+    Cell cell{long(part_of(target.receivers, i)), luminance(error) > 0 ? 1 : 0};
+    for (int a = 0; a < 3; ++a) cell[std::size_t(2 + a)] = std::lround(std::floor(double(position[a]) / size));
+    Sums& sums = cells[cell];
+    sums.squared += squared;
+    sums.wanted += double(luminance(target.illumination[i]));
+    sums.found += double(luminance(illumination[i]));
+    sums.moment += squared * to_eigen(position);
+  }
+  return cells;
+}
+
+double total_of(const std::map<Cell, Sums>& cells) {
+  double total = 0;
+  for (const auto& [cell, sums] : cells) total += sums.squared;
+  return total;
+}
+
+bool falls_still(const SolveResult& result, std::size_t count) {
+  const auto& curve = result.error_curve;
+  if (curve.size() < 2 || curve.back().lights.size() != count) return false;
+  return curve.back().relative_l2 < kStillFalls * curve[curve.size() - 2].relative_l2;
+}
+
+bool at_border(const SolveProblem& problem, const SolveResult& result) {
+  if (problem.places.boxes.empty()) return false;
+  for (const FoundLight& found : result.lights) {
+    const auto* light = std::get_if<renderer::PointLight>(&found.light);
+    for (const renderer::Box3f& box : problem.places.boxes) {
+      if (light == nullptr || !box.contains(light->position)) continue;
+      const Vec3f inside = min(light->position - box.min, box.max - light->position);
+      if (double(min_component(inside)) <= kAtBorder * double(box.diagonal())) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<NotReached> places_not_reached(const Target& target, const std::vector<Vec3f>& illumination, double noise) {
+  const std::map<Cell, Sums> cells = sums_by_cell(target, illumination);
+  double wanted = 0;
+  for (std::size_t i = 0; i < target.illumination.size(); ++i) {
+    wanted += double(target.weight[i]) * double(length_squared(target.illumination[i]));
+  }
+  const double total = total_of(cells);
+  if (total <= (kSeen * kSeen + noise * noise) * wanted) return {};
+  std::vector<NotReached> places;
+  for (const auto& [cell, sums] : cells) {
+    const auto part = std::size_t(cell[0]);
+    places.push_back({part < target.receivers.parts.size() ? target.receivers.parts[part].name : "",
+                      to_vec3f(sums.moment / sums.squared), sums.squared / total, sums.found - sums.wanted,
+                      sums.wanted});
+  }
+  std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+  places.resize(std::min(places.size(), kMostPlaces));
+  std::erase_if(places, [&](const NotReached& p) { return p.share < kLeastShare && p.share < places.front().share; });
+  return places;
+}
+
+std::string advice_for(const SolveProblem& problem, const SolveOptions& options, const SolveResult& result) {
+  if (result.not_reached.empty()) return {};
+  if (!problem.lights_in_place.empty()) return "lights that may move would come closer";
+  const int most = options.exact_lights > 0 ? options.exact_lights : options.max_lights;
+  if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
+    return fmt::format("more lights may come closer: {} were allowed", most);
+  }
+  if (at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";
+  if (problem.intensities.any() || !problem.places.mounts.empty() || problem.places.surface_distance > 0 ||
+      problem.places.light_distance > 0) {
+    return "without the constraints lights may come closer";
+  }
+  return "no more lights from anywhere in the region explain it: paint it otherwise, or give it less weight";
+}
+
+}  // namespace chiaro::inverse

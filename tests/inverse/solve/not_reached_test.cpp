@@ -1,0 +1,66 @@
+#include "inverse/solve/not_reached.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/inverse/solve/painted_corner.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using tests::known_lights;
+using tests::PaintedCorner;
+
+TEST(NotReached, NamesThePlaceThatIsTooDark) {
+  const PaintedCorner corner;
+  Target target = corner.target(known_lights(2), 0);
+  const std::vector<Vec3f> illumination = target.illumination;
+  EXPECT_TRUE(places_not_reached(target, illumination, 0).empty());
+  const Receivers& receivers = corner.receivers();
+  const Vec3f middle = receivers.positions[receivers.parts[1].first_receiver + receivers.parts[1].receiver_count / 2];
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    if (length(receivers.positions[i] - middle) < 0.3F) target.illumination[i] = {9, 9, 9};
+  }
+  const std::vector<NotReached> places = places_not_reached(target, illumination, 0.01);
+  ASSERT_FALSE(places.empty());
+  EXPECT_LT(length(places[0].position - middle), 0.5F);
+  EXPECT_LT(places[0].excess, 0);
+  double share = 0;
+  for (const NotReached& place : places) share += place.share;
+  EXPECT_GT(share, 0.5);
+  EXPECT_LE(share, 1 + 1e-9);
+}
+
+TEST(NotReached, NoiseIsNoPlace) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(2), 0);
+  std::vector<Vec3f> noisy = target.illumination;
+  for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] = (i % 2 == 0 ? 1.08F : 0.92F) * noisy[i];
+  EXPECT_TRUE(places_not_reached(target, noisy, 0.08).empty());
+  EXPECT_FALSE(places_not_reached(target, noisy, 0.01).empty());
+}
+
+// A bright patch on a wall and nothing else, and lights that may stand on the other side of the room alone.
+TEST(NotReached, SolvesSayWhatMayHelp) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(3), 0);
+  SolveProblem problem{corner.tracer(), target, {}, {}, tests::bake_settings(0), {}};
+  problem.grid.counts = {7, 6, 7};
+  SolveOptions options;
+  options.important_vertices = 200;
+  options.verification_samples = 16;
+  options.max_lights = 2;
+  const SolveResult few = solve(problem, options);
+  EXPECT_FALSE(few.not_reached.empty());
+  EXPECT_NE(few.advice.find("more lights"), std::string::npos) << few.advice;
+  options.max_lights = 8;
+  const SolveResult enough = solve(problem, options);
+  EXPECT_TRUE(enough.not_reached.empty());
+  EXPECT_TRUE(enough.advice.empty());
+  problem.places.boxes = {{{1.5F, 2.5F, 1.5F}, {2, 2.8F, 2}}};
+  const SolveResult narrow = solve(problem, options);
+  EXPECT_FALSE(narrow.not_reached.empty());
+  EXPECT_NE(narrow.advice.find("region"), std::string::npos) << narrow.advice;
+}
+
+}  // namespace
+}  // namespace chiaro::inverse
