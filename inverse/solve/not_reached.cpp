@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSeen = 0.05;        // relative L2 beyond noise
 constexpr double kCell = 0.08;        // of the receivers' diagonal: what counts as one place
+constexpr double kLeastCell = 0.005;  // of the squared error, that a cell counts with
 constexpr double kLeastShare = 0.05;  // of the squared error
 constexpr std::size_t kMostPlaces = 3;
 constexpr double kAtBorder = 0.005;   // of the region's diagonal
@@ -60,6 +61,25 @@ double total_of(const std::map<Cell, Sums>& cells) {
   return total;
 }
 
+// Of each part of the receivers where it is too dark, and where it is too bright: all its cells that hold more than a
+// little of the error, and the middle of the worst.
+std::vector<NotReached> places_by_surface(const Receivers& receivers, const std::map<Cell, Sums>& cells, double total) {
+  std::map<std::array<long, 2>, std::pair<NotReached, double>> surfaces;  // with the squared error of the worst cell
+  for (const auto& [cell, sums] : cells) {
+    if (sums.squared < kLeastCell * total) continue;
+    auto& [place, worst] = surfaces[{cell[0], cell[1]}];
+    const auto part = std::size_t(cell[0]);
+    place.node = part < receivers.parts.size() ? receivers.parts[part].name : "";
+    place.share += sums.squared / total;
+    place.excess += sums.found - sums.wanted;
+    place.wanted += sums.wanted;
+    if (sums.squared > worst) worst = sums.squared, place.position = to_vec3f(sums.moment / sums.squared);
+  }
+  std::vector<NotReached> places;
+  for (const auto& [surface, place] : surfaces) places.push_back(place.first);
+  return places;
+}
+
 bool falls_still(const SolveResult& result, std::size_t count) {
   const auto& curve = result.error_curve;
   if (curve.size() < 2 || curve.back().lights.size() != count) return false;
@@ -89,14 +109,9 @@ std::vector<NotReached> places_not_reached(const Target& target, const std::vect
   }
   const double total = total_of(cells);
   if (total <= (kSeen * kSeen + noise * noise) * wanted) return {};
-  std::vector<NotReached> places;
-  for (const auto& [cell, sums] : cells) {
-    const auto part = std::size_t(cell[0]);
-    places.push_back({part < target.receivers.parts.size() ? target.receivers.parts[part].name : "",
-                      to_vec3f(sums.moment / sums.squared), sums.squared / total, sums.found - sums.wanted,
-                      sums.wanted});
-  }
+  std::vector<NotReached> places = places_by_surface(target.receivers, cells, total);
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+  if (places.empty()) return places;
   places.resize(std::min(places.size(), kMostPlaces));
   std::erase_if(places, [&](const NotReached& p) { return p.share < kLeastShare && p.share < places.front().share; });
   return places;

@@ -52,7 +52,7 @@ struct FoundLight {
 // A place where the lights found do not produce the target.
 struct NotReached {
   std::string node;   // whose surface it is
-  Vec3f position;     // its middle, by the error, metres
+  Vec3f position;     // where it is worst, metres
   double share = 0;   // of the squared error of all receivers
   double excess = 0;  // Σ luminance found − wanted, cd/m², over its receivers: negative where it is too dark …
   double wanted = 0;  // … and Σ luminance wanted
