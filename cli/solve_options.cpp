@@ -20,6 +20,13 @@ inverse::SolveMethod parse_method(const std::string& text) {
   throw UsageError(fmt::format("'{}' (expected thesis or joint)", text));
 }
 
+inverse::Objective parse_objective(const std::string& text) {
+  if (text == "l2") return inverse::Objective::kL2;
+  if (text == "relative") return inverse::Objective::kRelative;
+  if (text == "perceptual") return inverse::Objective::kPerceptual;
+  throw UsageError(fmt::format("'{}' (expected l2, relative or perceptual)", text));
+}
+
 void parse_importance_weights(const std::string& text, inverse::SolveOptions& solve) {
   const std::vector<double> weights = parse_numbers(text, 2, kNotNegative);
   if (weights[0] + weights[1] <= 0) throw UsageError(fmt::format("'{}' (expected one above 0)", text));
@@ -30,6 +37,11 @@ void parse_importance_weights(const std::string& text, inverse::SolveOptions& so
 void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
   add_parsed(command, {"--method", "NAME", "joint, or thesis: the published pipeline, step for step (default joint)"},
              [&solve](const std::string& text) { solve.method = parse_method(text); });
+  add_parsed(command,
+             {"--objective", "NAME",
+              "What the lights come closest in: l2, relative (to the target, place by place) or perceptual (lightness; "
+              "default l2)"},
+             [&solve](const std::string& text) { solve.objective = parse_objective(text); });
   add_number(command, {"--error-threshold", "E", "Of the lightcut, relative L2 (default: from the method)"},
              solve.error_threshold, kPositive);
   add_count(command,
@@ -71,6 +83,9 @@ renderer::Lights lights_in_place(const LoadedStage& stage, const SolveChoices& c
 void settle_constraints(SolveChoices& choices) {
   choices.constraints = choose_constraints(choices.constraint_options, choices.grid);
   require_known_to(choices.solve.method, choices.constraints);
+  if (choices.solve.method == inverse::SolveMethod::kThesis && choices.solve.objective != inverse::Objective::kL2) {
+    throw UsageError("--objective: --method thesis knows l2 alone (expected joint)");
+  }
   choices.solve.max_lights = choices.constraints.max_lights.value_or(choices.solve.max_lights);
   choices.solve.exact_lights = choices.constraints.lights.value_or(0);
 }

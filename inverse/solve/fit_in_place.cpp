@@ -113,6 +113,7 @@ ManyObservations observe_many(const SolveProblem& problem, const renderer::Light
   ManyObservations many{
       unity_columns(problem, lights, samples, options, control),
       observe_target(problem.target, draw, fixed_illumination(problem, samples, fixed_samples, options, control))};
+  many.observations = weighted_by_objective(many.observations, options.objective);
   many.observations.rules = problem.intensities;
   return many;
 }

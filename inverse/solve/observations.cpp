@@ -10,9 +10,10 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kOrdinary = 0.97;  // of all receivers are as bright as lights at a distance make them
-constexpr double kShadows = 0.01;   // relative error of transport at least: shadows' edges
-constexpr double kDark = 0.1;       // in mean brightness: darker receivers count as being as bright
+constexpr double kOrdinary = 0.97;              // of all receivers are as bright as lights at a distance make them
+constexpr double kShadows = 0.01;               // relative error of transport at least: shadows' edges
+constexpr double kLinearBelow = 216.0 / 24389;  // relative luminance up to which L* is linear
+constexpr double kDark = 0.1;                   // in mean brightness: darker receivers count as being as bright
 
 // The brightness that this part of all receivers do not exceed.
 double quantile(const Eigen::VectorXd& brightness, const Eigen::VectorXd& stands_for, double part) {
@@ -64,6 +65,21 @@ Observations weighted_by_noise(const Observations& observations, double transpor
   const Eigen::ArrayXd by_transport = std::max(kShadows, transport_error) * brightness.max(kDark * brightness.mean());
   Observations weighted = observations;
   weighted.sqrt_weight.array() /= (3 * observations.standard_error.array().square() + by_transport.square()).sqrt();
+  weighted.measure_target();
+  return weighted;
+}
+
+Observations weighted_by_objective(const Observations& observations, Objective objective) {
+  if (objective == Objective::kL2) return observations;
+  const Eigen::VectorXd y = observations.target * Eigen::Vector3d(0.2126, 0.7152, 0.0722);
+  const double white = quantile(y, observations.stands_for, kOrdinary);
+  if (!(white > 0)) return observations;
+  Observations weighted = observations;
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const double relative = y[i] / white;
+    weighted.sqrt_weight[i] *= objective == Objective::kRelative ? 1 / std::max(relative, kDark)
+                                                                 : std::pow(std::max(relative, kLinearBelow), -2.0 / 3);
+  }
   weighted.measure_target();
   return weighted;
 }

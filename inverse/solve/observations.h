@@ -30,6 +30,16 @@ Observations with_capped_weights(const Observations& observations);
 // The same with weights by how well each receiver is known: its standard error, and the relative error of transport.
 Observations weighted_by_noise(const Observations& observations, double transport_error);
 
+// How a receiver's error counts.
+enum class Objective : std::uint8_t {
+  kL2,          // as (3.6) has it
+  kRelative,    // in parts of what is wanted there
+  kPerceptual,  // as lightness (CIE 1976 L*) changes with luminance there, white being the brightest of most receivers
+};
+
+// The same with weights by an objective. Lightness is taken as linear about the target.
+Observations weighted_by_objective(const Observations& observations, Objective objective);
+
 // The same with weights by which the important vertices stand for all receivers.
 Observations standing_for_all(const Observations& observations);
 

@@ -164,7 +164,8 @@ struct JointSearch {
   const LightResponse& response;
   const ExactIndirect& exact;
   const Observations& searched;  // no receiver hides the light of all others
-  const Observations& judged;    // as (3.6) judges them
+  const Observations& judged;    // as the objective judges them
+  const Observations& reported;  // as (3.6) judges them
   const HeldOut* held_out;       // absent where lights beside surfaces were found
 };
 
@@ -259,7 +260,7 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
     remaining = less(search.searched, response, beside_surfaces);
     count = find_the_rest();
   }
-  const std::vector<LightSet> error_curve = error_curve_of(response, search.judged, beside_surfaces, count);
+  const std::vector<LightSet> error_curve = error_curve_of(response, search.reported, beside_surfaces, count);
   clock.finish("joint_refinement",
                {{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}});
   // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
@@ -354,7 +355,8 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   clock.finish("fixed_illumination", {});
 
   const bool joint = options.method == SolveMethod::kJoint;
-  Observations judged = joint ? standing_for_all(published) : published;
+  const Observations reported = joint ? standing_for_all(published) : published;
+  Observations judged = joint ? weighted_by_objective(reported, options.objective) : published;
   judged.rules = problem.intensities;
   Observations searched = published;
   std::optional<ExactIndirect> exact;
@@ -367,7 +369,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
       beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
     }
     searched = published.noise > 0 ? weighted_by_noise(published, transport.cache.indirect_relative_error)
-                                   : with_capped_weights(published);
+                                   : with_capped_weights(weighted_by_objective(published, options.objective));
     result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
     if (beside_surfaces.empty()) {
       held_out = hold_out(problem, transport.cache.settings, options, control);
@@ -387,15 +389,16 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
   const Optimum optimum =
-      joint ? optimize_jointly({problem, options, control, response, *exact, searched, judged, held_out.get()},
-                               beside_surfaces, tree, clock)
-            : optimize_as_published(response, published, tree, options, clock);
+      joint
+          ? optimize_jointly({problem, options, control, response, *exact, searched, judged, reported, held_out.get()},
+                             beside_surfaces, tree, clock)
+          : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
   require_all_lights(problem, options, optimum.lights.size());
-  report_lights(response, judged, optimum.lights, result);
-  result.initial_relative_l2 = relative_error(judged, illumination_of(response, optimum.start));
-  result.relative_l2_cached = relative_error(judged, illumination_of(response, optimum.lights));
+  report_lights(response, reported, optimum.lights, result);
+  result.initial_relative_l2 = relative_error(reported, illumination_of(response, optimum.start));
+  result.relative_l2_cached = relative_error(reported, illumination_of(response, optimum.lights));
   result.termination = optimum.termination;
   result.error_curve = optimum.error_curve;
   result.target_noise = target_noise(problem.target);

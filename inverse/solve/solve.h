@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "inverse/solve/intensity_rules.h"
+#include "inverse/solve/observations.h"
 #include "inverse/target/target.h"
 #include "inverse/transport/allowed_places.h"
 #include "inverse/transport/transport_cache.h"
@@ -29,6 +29,7 @@ struct LightSet {
 
 struct SolveOptions {
   SolveMethod method = SolveMethod::kJoint;
+  Objective objective = Objective::kL2;  // of the joint method
   int important_vertices = 1000;
   double geometry_weight = 1, illumination_weight = 1;  // w1, w2 of eq. (3.2)
   double weak_light = 0.02;                             // w of eq. (3.5)
