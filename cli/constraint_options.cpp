@@ -31,6 +31,11 @@ void refuse_both(bool one, bool other, const char* names) {
   if (one && other) throw UsageError(fmt::format("{} exclude each other", names));
 }
 
+void refuse_more_than_most(const inverse::LightConstraints& c) {
+  if (!c.lights || !c.max_lights || *c.lights <= *c.max_lights) return;
+  throw UsageError(fmt::format("--lights {} and --max-lights {} exclude each other", *c.lights, *c.max_lights));
+}
+
 }  // namespace
 
 void add_constraint_options(CLI::App& command, ConstraintOptions& options) {
@@ -65,6 +70,8 @@ inverse::LightConstraints choose_constraints(const ConstraintOptions& options, c
   if (!options.file.empty()) constraints = merged(constraints, inverse::load_constraints(options.file));
   refuse_both(constraints.keep_lights, constraints.keep_positions, "--keep-lights and --keep-positions");
   refuse_both(constraints.lights.has_value(), constraints.keep_positions, "--lights and --keep-positions");
+  refuse_both(constraints.max_lights.has_value(), constraints.keep_positions, "--max-lights and --keep-positions");
+  refuse_more_than_most(constraints);
   return constraints;
 }
 

@@ -196,6 +196,7 @@ class Search {
     LightCountResult r;
     std::size_t size = best_.size() < 2 ? 0 : best_size();
     if (options_.exact_lights > 0) size = std::min(std::size_t(options_.exact_lights), best_.size() - 1);
+    while (size > 0 && best_[size].lights.empty()) --size;
     if (size > 0) r.lights = best_[size].lights, r.error = best_[size].error;
     for (std::size_t n = 1; n < best_.size(); ++n) {
       r.error_curve.push_back(best_[n].error);

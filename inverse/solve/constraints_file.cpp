@@ -12,7 +12,7 @@ constexpr int kMostLights = 1000;
 int read_count(const JsonField& field) {
   const char* const expected = "a whole number from 1 to 1000";
   if (!field.value.is_number_integer()) field.fail_as_found(expected);
-  return int(read_number(field, {1, float(kMostLights)}, expected));
+  return int(read_double(field, {1, float(kMostLights)}, expected));
 }
 
 std::string read_name(const JsonField& field) {
@@ -27,7 +27,7 @@ Mount read_mount(const JsonField& field) {
   expect_object(field, kKnown, std::span(kKnown).first(1));
   Mount mount{read_name(field.member("on"))};
   if (field.has("clearance")) {
-    mount.clearance = double(read_number(field.member("clearance"), kNotNegative, "a number ≥ 0, metres"));
+    mount.clearance = read_double(field.member("clearance"), kNotNegative, "a number ≥ 0, metres");
   }
   return mount;
 }
@@ -56,8 +56,8 @@ std::array<double, 2> read_kelvin(const JsonField& field) {
   const char* const expected = "two temperatures, the lower first, from 1667 to 25000 kelvin";
   if (!field.value.is_array() || field.value.size() != 2) field.fail_as_found(expected);
   constexpr JsonRange kKelvin{float(renderer::kLeastKelvin), float(renderer::kMostKelvin)};
-  const std::array<double, 2> kelvin{double(read_number(field.element(0), kKelvin, expected)),
-                                     double(read_number(field.element(1), kKelvin, expected))};
+  const std::array<double, 2> kelvin{read_double(field.element(0), kKelvin, expected),
+                                     read_double(field.element(1), kKelvin, expected)};
   if (kelvin[0] > kelvin[1]) field.fail("the first is higher than the second", expected);
   return kelvin;
 }
@@ -69,7 +69,7 @@ LightConstraints read_constraints(const JsonField& root) {
   expect_object(root, kKnown, {});
   LightConstraints c;
   const auto distance = [&](const char* name, std::optional<double>& value) {
-    if (root.has(name)) value = double(read_number(root.member(name), kNotNegative, "a number ≥ 0, metres"));
+    if (root.has(name)) value = read_double(root.member(name), kNotNegative, "a number ≥ 0, metres");
   };
   const auto flag = [&](const char* name, bool& value) {
     if (root.has(name)) value = read_bool(root.member(name));
@@ -80,7 +80,7 @@ LightConstraints read_constraints(const JsonField& root) {
   distance("surface_distance", c.surface_distance);
   distance("light_distance", c.light_distance);
   if (root.has("max_intensity")) {
-    c.max_intensity = double(read_number(root.member("max_intensity"), kPositive, "a number > 0, candela"));
+    c.max_intensity = read_double(root.member("max_intensity"), kPositive, "a number > 0, candela");
   }
   if (root.has("kelvin")) c.kelvin = read_kelvin(root.member("kelvin"));
   flag("one_color", c.one_color);

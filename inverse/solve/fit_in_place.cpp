@@ -5,6 +5,7 @@
 
 #include <Eigen/QR>
 
+#include "inverse/solve/check_lights_in_place.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/solve/traced_light.h"
@@ -130,6 +131,7 @@ PlacedFit refit_over_many(const SolveProblem& problem, const renderer::Lights& l
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock;
   SolveResult result;
+  check_lights_in_place(problem);
   const auto [columns, observations] = observe_many(problem, problem.lights_in_place, options, control);
   result.cache_seconds = clock.finish("traced_lights", {{"lights", double(columns.size())}});
   const IntensityFit fit = fit_intensities(observations, columns);

@@ -14,14 +14,22 @@ namespace {
 struct Merged {
   Eigen::Vector3d weighted_position = Eigen::Vector3d::Zero();
   double weight = 0;
+  Eigen::Vector3d sum_of_positions = Eigen::Vector3d::Zero();
+  int count = 0;
   Eigen::Array3d intensity = Eigen::Array3d::Zero();
 
   void add(const LightEstimate& light, double contribution) {
     weighted_position += contribution * light.position;
     weight += contribution;
+    sum_of_positions += light.position;
+    ++count;
     intensity += light.intensity;
   }
-  LightEstimate light() const { return {weighted_position / weight, intensity}; }
+  // Lights that contribute nothing, as where they were merged inside a solid, count alike.
+  LightEstimate light() const {
+    return {weight > 0 ? Eigen::Vector3d(weighted_position / weight) : Eigen::Vector3d(sum_of_positions / count),
+            intensity};
+  }
 };
 
 // D of (3.6) between two unity lights, made symmetric by the mean of both norms.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/important_vertices.h"
 #include "inverse/solve/light_intervals.h"
@@ -150,6 +151,7 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   if (options.exact_lights > 0) cut_options = {0, options.exact_lights, options.exact_lights};
   const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
+  if (cut.lights.empty()) return {{}, {}, "no light of the grid reaches the painted surfaces", {}};
   const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
   const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
@@ -300,10 +302,22 @@ AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid)
   return {problem.tracer.scene(), grid.region, problem.places, std::move(stay)};
 }
 
+std::string where_lights_may_stand(const PlaceRules& rules) {
+  std::vector<std::string> nodes;
+  for (const Mount& mount : rules.mounts) nodes.push_back('"' + mount.node + '"');
+  const std::string hanging = fmt::format("where lights hang on {}", fmt::join(nodes, ", "));
+  if (nodes.empty()) return "in the region";
+  return rules.boxes.empty() ? hanging : "in the region or " + hanging;
+}
+
+std::string so_far_from_surfaces(const PlaceRules& rules) {
+  return rules.surface_distance > 0 ? fmt::format(" {} m from all surfaces", rules.surface_distance) : "";
+}
+
 [[noreturn]] void no_place(const SolveProblem& problem) {
   throw Error({problem.tracer.scene().path, "solve",
-               fmt::format("no light possible: nowhere in the region is a place {} m from all surfaces",
-                           problem.places.surface_distance),
+               fmt::format("no light possible: nowhere {} is a place{}", where_lights_may_stand(problem.places),
+                           so_far_from_surfaces(problem.places)),
                "a smaller distance to surfaces, or a larger region"});
 }
 
@@ -317,14 +331,25 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
        fmt::format("one of {}", fmt::join(counts, ", "))});
 }
 
-// As many as asked for, where rules keep lights apart.
-void require_all_lights(const SolveProblem& problem, const SolveOptions& options, std::size_t found) {
-  const bool too_few = found == 0 || int(found) < options.exact_lights;
-  if (!too_few || !(problem.places.light_distance > 0)) return;
+[[noreturn]] void nothing_lit(const SolveProblem& problem) {
+  no_light_possible(problem, fmt::format("no position {}{} lights the painted surfaces",
+                                         where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)));
+}
+
+[[noreturn]] void too_crowded(const SolveProblem& problem, int lights) {
+  const double distance = problem.places.light_distance;
   throw Error({problem.tracer.scene().path, "solve",
-               fmt::format("no light possible: {} lights {} m apart find no place", std::max(1, options.exact_lights),
-                           problem.places.light_distance),
+               lights > 1 ? fmt::format("no light possible: {} lights {} m apart find no place", lights, distance)
+                          : fmt::format("no light possible: none finds a place {} m from those that stay", distance),
                "fewer lights, a smaller distance between them, or a larger region"});
+}
+
+// As many as asked for, and one of them shines.
+void require_all_lights(const SolveProblem& problem, const SolveOptions& options, const LightEstimates& found) {
+  const int wanted = std::max(1, options.exact_lights);
+  if (int(found.size()) < wanted) too_crowded(problem, wanted);
+  const auto is_dark = [](const LightEstimate& light) { return !(light.intensity > 0).any(); };
+  if (std::all_of(found.begin(), found.end(), is_dark)) nothing_lit(problem);
 }
 
 }  // namespace
@@ -379,8 +404,6 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
 
   const Observations remaining = less(searched, response, beside_surfaces);
   const LightDistribution distribution = estimate_light_distribution(response, remaining, options.weak_light);
-  if (distribution.rounds[1].lights.empty() && beside_surfaces.empty())
-    no_light_possible(problem, "no position in the region lights the painted surfaces");
   result.initial_seconds += clock.finish("nnls", distribution_figures(distribution));
   const LightEstimates clusters = segment_distribution(distribution, remaining);
   result.initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
@@ -388,14 +411,16 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const LightTree tree = make_light_tree(response, remaining, clusters);
   result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   const double before = clock.total();
-  const Optimum optimum =
+  Optimum optimum =
       joint
           ? optimize_jointly({problem, options, control, response, *exact, searched, judged, reported, held_out.get()},
                              beside_surfaces, tree, clock)
           : optimize_as_published(response, published, tree, options, clock);
   result.optimal_seconds += clock.total() - before;
 
-  require_all_lights(problem, options, optimum.lights.size());
+  optimum.lights =
+      filled_up(response, judged, std::move(optimum.lights), std::size_t(std::max(1, options.exact_lights)));
+  require_all_lights(problem, options, optimum.lights);
   report_lights(response, reported, optimum.lights, result);
   result.initial_relative_l2 = relative_error(reported, illumination_of(response, optimum.start));
   result.relative_l2_cached = relative_error(reported, illumination_of(response, optimum.lights));

@@ -34,11 +34,15 @@ void expect_object(const JsonField& field, std::span<const std::string_view> kno
   }
 }
 
-float read_number(const JsonField& field, JsonRange range, const char* expected) {
+double read_double(const JsonField& field, JsonRange range, const char* expected) {
   if (!field.value.is_number()) field.fail_as_found(expected);
-  const auto number = float(field.value.get<double>());
-  if (!(number >= range.low && number <= range.high)) field.fail_as_found(expected);
+  const auto number = field.value.get<double>();
+  if (!(float(number) >= range.low && float(number) <= range.high)) field.fail_as_found(expected);
   return number;
+}
+
+float read_number(const JsonField& field, JsonRange range, const char* expected) {
+  return float(read_double(field, range, expected));
 }
 
 renderer::Vec3f read_triple(const JsonField& field, JsonRange range, const char* expected) {

@@ -42,6 +42,7 @@ inline constexpr JsonRange kNotNegative{0, std::numeric_limits<float>::max()};
 inline constexpr JsonRange kPositive{std::numeric_limits<float>::min(), std::numeric_limits<float>::max()};
 
 // A number that as a float lies in `range`; one too large for a float is infinite, and so outside.
+double read_double(const JsonField& field, JsonRange range, const char* expected);
 float read_number(const JsonField& field, JsonRange range, const char* expected);
 renderer::Vec3f read_triple(const JsonField& field, JsonRange range, const char* expected);
 bool read_bool(const JsonField& field);

@@ -49,14 +49,15 @@ Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& oth
   return length > 0 ? Vector3d((to - from) / length) : otherwise;
 }
 
-double clearance_of(const Mount& mount, const renderer::Scene& scene, double surface_distance) {
-  const double clearance =
-      mount.clearance ? *mount.clearance : kDefaultClearance * double(NearestSurface(scene).bounds().diagonal());
-  if (clearance >= surface_distance) return clearance;
+double clearance_of(const Mount& mount, const renderer::Scene& scene) {
+  return mount.clearance ? *mount.clearance : kDefaultClearance * double(NearestSurface(scene).bounds().diagonal());
+}
+
+[[noreturn]] void too_near(const Mount& mount, const renderer::Scene& scene, double surface_distance) {
   throw renderer::Error(
       {scene.path, "surface to hang lights on",
        fmt::format("no light possible: lights are to hang {} m from \"{}\", and no nearer than {} m to any surface",
-                   clearance, mount.node, surface_distance),
+                   clearance_of(mount, scene), mount.node, surface_distance),
        "a distance to surfaces no larger than the clearance"});
 }
 
@@ -73,7 +74,7 @@ LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& sce
   grid.parts = rules.boxes;
   if (!rules.mounts.empty()) grid.region = NearestSurface(scene).bounds();
   for (const Mount& mount : rules.mounts)
-    grid.parts.push_back(grown(surface_of(scene, mount).bounds(), clearance_of(mount, scene, 0)));
+    grid.parts.push_back(grown(surface_of(scene, mount).bounds(), clearance_of(mount, scene)));
   for (const Box3f& part : grid.parts) {
     if (!grid.region) grid.region.emplace();
     grid.region->extend(part.min);
@@ -91,12 +92,14 @@ AllowedPlaces::AllowedPlaces(const renderer::Scene& scene, const Box3f& region, 
     if (const Box3f inside = intersection(box, region); !inside.empty()) boxes_.push_back(inside);
   }
   for (const Mount& mount : rules.mounts) {
-    mounts_.push_back(std::make_shared<MountedSurface>(
-        MountedSurface{surface_of(scene, mount), clearance_of(mount, scene, rules.surface_distance)}));
+    MountedSurface mounted{surface_of(scene, mount), clearance_of(mount, scene)};
+    if (mounted.clearance < rules.surface_distance) continue;
+    mounts_.push_back(std::make_shared<MountedSurface>(std::move(mounted)));
   }
   const bool anywhere = rules.boxes.empty() && rules.mounts.empty();
   if (anywhere) boxes_.push_back(region);
   if (boxes_.empty() && mounts_.empty()) {
+    if (!rules.mounts.empty()) too_near(rules.mounts.front(), scene, rules.surface_distance);
     throw renderer::Error({scene.path, "region", "no light possible: lies outside the grid of lights",
                            "a region that the transport was baked for"});
   }

@@ -34,8 +34,9 @@ class AllowedPlaces {
  public:
   // Anywhere in the region.
   explicit AllowedPlaces(const renderer::Box3f& region);
-  // Boxes count as far as they lie in the region. Error for a node that is not there or has no surface, and for boxes
-  // outside the region. Lights that stay are kept away from by the rules' distance, too.
+  // Boxes count as far as they lie in the region, and mounts that are not nearer to surfaces than lights may be. Error
+  // for a node that is not there or has no surface, and where neither boxes nor mounts are left. Lights that stay are
+  // kept away from by the rules' distance, too.
   AllowedPlaces(const renderer::Scene& scene, const renderer::Box3f& region, const PlaceRules& rules,
                 std::vector<Eigen::Vector3d> lights_that_stay = {});
 

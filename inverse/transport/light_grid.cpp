@@ -96,9 +96,9 @@ Vec3f node_position(const LightGrid& grid, std::size_t node) {
   return grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)};
 }
 
-// Whether the cell around a node has a part of the region in it; of no parts, it has.
-bool cell_touches(const LightGrid& grid, Vec3f node, const std::vector<Box3f>& parts) {
-  const Vec3f half = 0.5F * grid.spacing;
+// Whether so many cells around a node have a part of the region in them; of no parts, they have.
+bool cell_touches(const LightGrid& grid, Vec3f node, const std::vector<Box3f>& parts, float cells) {
+  const Vec3f half = 0.5F * cells * grid.spacing;
   const auto touches = [&](const Box3f& part) {
     return !Box3f{max(part.min, node - half), min(part.max, node + half)}.empty();
   };
@@ -190,19 +190,26 @@ LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOpti
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
   const FreeSpace free_space(tracer);
   const float touching = kTouching * least_positive(grid.spacing);
-  std::vector<char> free(nodes);
-  renderer::parallel_for(nodes, [&](std::size_t i) {
-    const Vec3f position = node_position(grid, i);
-    free[i] = cell_touches(grid, position, options.parts) && free_space.contains(position, touching) ? 1 : 0;
-  });
-  grid.light_of_node.assign(nodes, -1);
-  for (std::size_t i = 0; i < nodes; ++i) {
-    if (free[i] == 0) continue;
-    grid.light_of_node[i] = int(grid.positions.size());
-    grid.positions.push_back(node_position(grid, i));
-  }
+  const auto fill = [&](float cells) {
+    std::vector<char> free(nodes);
+    renderer::parallel_for(nodes, [&](std::size_t i) {
+      const Vec3f position = node_position(grid, i);
+      free[i] = cell_touches(grid, position, options.parts, cells) && free_space.contains(position, touching) ? 1 : 0;
+    });
+    grid.light_of_node.assign(nodes, -1);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      if (free[i] == 0) continue;
+      grid.light_of_node[i] = int(grid.positions.size());
+      grid.positions.push_back(node_position(grid, i));
+    }
+  };
+  fill(1);
+  // Small parts beside solids: their neighbours.
+  const int most = options.parts.empty() ? 1 : 2 * *std::max_element(grid.counts.begin(), grid.counts.end());
+  for (int cells = 3; grid.positions.empty() && cells < 2 * most; cells *= 2) fill(float(cells));
   if (grid.positions.empty()) {
-    throw Error({tracer.scene().path, "light grid", "no light possible: every position lies inside a solid",
+    throw Error({tracer.scene().path, "light grid",
+                 "no light possible: every position lies inside a solid, or on a surface",
                  "a region with free space, by --region"});
   }
   return grid;

@@ -1,5 +1,8 @@
 #include "inverse/transport/light_response.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
@@ -17,16 +20,18 @@ void check_kind(const UnityLight& light, Evaluation evaluation, const GatherOper
 }
 
 std::vector<std::size_t> lights_near(const LightGrid& grid, const AllowedPlaces& places) {
-  std::vector<char> near(grid.positions.size(), 1);
-  const double reach = double(length(grid.spacing));
-  renderer::parallel_for(near.size(), [&](std::size_t j) {
+  constexpr double kNowhere = std::numeric_limits<double>::infinity();
+  std::vector<double> distance(grid.positions.size());
+  renderer::parallel_for(distance.size(), [&](std::size_t j) {
     const Vector3d position = to_eigen(grid.positions[j]);
     const auto place = places.nearest(position);
-    near[j] = place && (*place - position).norm() <= reach ? 1 : 0;
+    distance[j] = place ? (*place - position).norm() : kNowhere;
   });
+  double reach = double(length(grid.spacing));
+  if (!distance.empty()) reach = std::max(reach, *std::min_element(distance.begin(), distance.end()));
   std::vector<std::size_t> lights;
-  for (std::size_t j = 0; j < near.size(); ++j) {
-    if (near[j] != 0) lights.push_back(j);
+  for (std::size_t j = 0; j < distance.size(); ++j) {
+    if (distance[j] <= reach && distance[j] < kNowhere) lights.push_back(j);
   }
   return lights;
 }

@@ -43,7 +43,8 @@ class LightResponse {
   const std::vector<renderer::SurfaceSample>& receivers() const { return receivers_; }
   const LightGrid& grid() const { return cache_.grid; }
   const AllowedPlaces& places() const { return places_; }
-  // Those of the grid's lights that have an allowed place no farther than a cell's diagonal.
+  // Those of the grid's lights that have an allowed place no farther than a cell's diagonal; where none has, the
+  // nearest.
   const std::vector<std::size_t>& grid_lights_near_places() const { return near_places_; }
 
   // Positions outside the grid's region take the indirect part of the nearest point of its border.

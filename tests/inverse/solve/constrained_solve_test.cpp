@@ -135,15 +135,57 @@ TEST_F(ConstrainedSolve, LightsInPlaceGetTheirIntensitiesBack) {
   for (int c = 0; c < 3; ++c) EXPECT_GT(result.lights[0].intensity_interval[c], 0.0F);
 }
 
-TEST_F(ConstrainedSolve, WhatNoLightCanKeepToIsNamed) {
-  const auto error_of = [&](const SolveProblem& ruled, const SolveOptions& how) -> std::string {
-    try {
-      solve(ruled, how);
-    } catch (const renderer::Error& error) {
-      return error.what();
-    }
-    return "no error";
+// One light explains it all.
+TEST_F(ConstrainedSolve, AsManyLightsAsAskedForShine) {
+  const Target target = corner_.target(known_lights(1), 0);
+  for (const SolveMethod method : {SolveMethod::kJoint, SolveMethod::kThesis}) {
+    SolveOptions how = options(4);
+    how.method = method;
+    const SolveResult result = solve(problem(target), how);
+    ASSERT_EQ(result.lights.size(), 4U);
+    for (const auto& light : lights_of(result)) EXPECT_GT(max_component(light.intensity), 0.0F);
+    EXPECT_LT(result.relative_l2, 0.2);
+  }
+}
+
+TEST_F(ConstrainedSolve, LightsFarApartAreFoundWhereFewerExplainAll) {
+  const Target target = corner_.target(known_lights(1), 0);
+  SolveProblem ruled = problem(target);
+  ruled.places.light_distance = 1.8;
+  ruled.kept_lights = {renderer::PointLight{"", {0.5F, 2.5F, 0.5F}, {0.1F, 0.1F, 0.1F}}};
+  const auto lights = lights_of(solve(ruled, options(4)));
+  ASSERT_EQ(lights.size(), 4U);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    EXPECT_GE(length(lights[i].position - Vec3f{0.5F, 2.5F, 0.5F}), 1.8F);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(length(lights[i].position - lights[j].position), 1.8F);
+  }
+}
+
+std::string error_of(const SolveProblem& ruled, const SolveOptions& how) {
+  try {
+    solve(ruled, how);
+  } catch (const renderer::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_F(ConstrainedSolve, LightsInPlaceThatBreakARuleAreNamed) {
+  SolveProblem ruled = problem(target_);
+  renderer::SpotLight spot;
+  spot.position = {1, 0.5F, 1};
+  ruled.lights_in_place = {renderer::PointLight{"Bulb", {3, 2, 3}, {1, 1, 1}}, spot};
+  EXPECT_EQ(error_of(ruled, options()), "no error");
+  const auto names = [&](const PlaceRules& rules, const char* text) {
+    ruled.places = rules;
+    EXPECT_NE(error_of(ruled, options()).find(text), std::string::npos) << error_of(ruled, options());
   };
+  names({.boxes = {{{0, 0, 0}, {2, 2, 2}}}}, "\"Bulb\" stays where it is, outside all regions");
+  names({.surface_distance = 0.6}, "light 2 stays where it is, and that is not 0.6 m from all surfaces");
+  names({.light_distance = 4}, "light 2 stays where it is, and is not 4 m apart from \"Bulb\"");
+}
+
+TEST_F(ConstrainedSolve, WhatNoLightCanKeepToIsNamed) {
   SolveProblem ruled = problem(target_);
   ruled.places.surface_distance = 50;
   EXPECT_NE(error_of(ruled, options()).find("nowhere in the region is a place 50 m from all surfaces"),

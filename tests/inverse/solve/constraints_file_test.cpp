@@ -42,6 +42,15 @@ TEST(ConstraintsFile, ReadsEveryField) {
   EXPECT_FALSE(c.keep_positions);
 }
 
+TEST(ConstraintsFile, KeepsNumbersAsOptionsDo) {
+  const LightConstraints c = load_text(
+      R"({"regions":[{"on":"A","clearance":0.1}],"surface_distance":0.3,"max_intensity":4.1,"kelvin":[2700.1,6500.3]})");
+  EXPECT_EQ(c.mounts[0].clearance, 0.1);
+  EXPECT_EQ(c.surface_distance, 0.3);
+  EXPECT_EQ(c.max_intensity, 4.1);
+  EXPECT_EQ(c.kelvin, (std::array<double, 2>{2700.1, 6500.3}));
+}
+
 TEST(ConstraintsFile, FaultsAreNamedByPlace) {
   const std::pair<const char*, const char*> faults[] = {
       {"[]", "an object"},

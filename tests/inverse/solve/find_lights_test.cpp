@@ -36,6 +36,15 @@ LightTree tree_of(const DirectProblem& problem) {
                          segment_distribution(distribution, problem.observations()));
 }
 
+// Inside the ball, where they light nothing.
+TEST(LightClusters, ThatContributeNothingMergeHalfWay) {
+  const tests::DirectProblem problem(tests::known_lights(1));
+  const LightEstimates hidden{{{2.1, 0.6, 1.8}, {1, 1, 1}}, {{2.3, 0.6, 1.8}, {1, 1, 1}}};
+  const LightTree tree = make_light_tree(problem.response(), problem.observations(), hidden);
+  ASSERT_EQ(tree.representatives.size(), 3U);
+  EXPECT_LT((tree.representatives[2].position - Eigen::Vector3d(2.2, 0.6, 1.8)).norm(), 1e-9);
+}
+
 TEST(LightDistribution, GathersAroundTheLights) {
   for (const std::size_t count : {1U, 2U}) {
     const DirectProblem problem(known_lights(count));

@@ -70,6 +70,18 @@ TEST_F(Places, HangInFrontOfANode) {
   }
 }
 
+// Where one of several regions is too near to surfaces the others are left.
+TEST_F(Places, OnSurfacesThatAreTooNearCountForNothing) {
+  const std::string node = scene_.instances.back().name;
+  const Box3f box{{3, 2, 3}, {3.5F, 2.5F, 3.5F}};
+  const AllowedPlaces places(scene_, bounds_, {.boxes = {box}, .mounts = {{node, 0.1}}, .surface_distance = 0.2});
+  for (std::uint32_t k = 0; k < 50; ++k) {
+    const auto place = places.nearest(random_position(k));
+    ASSERT_TRUE(place) << k;
+    EXPECT_TRUE(box.contains(to_vec3f(*place))) << k;
+  }
+}
+
 TEST_F(Places, SettleLightsFarApart) {
   const AllowedPlaces places(scene_, bounds_, {.surface_distance = 0.2, .light_distance = 0.5},
                              {to_eigen(bounds_.center())});

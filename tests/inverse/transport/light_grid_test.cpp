@@ -125,6 +125,17 @@ TEST(LightGrid, WithoutFreeSpaceIsAnError) {
   }
 }
 
+// The part's own cell has its node inside the ball.
+TEST(LightGrid, SmallPartsBesideSolidsHaveTheLightsAroundThem) {
+  const Scene scene = room_with_ball();
+  const RayTracer tracer(scene);
+  const Vec3f above = kBall + Vec3f{0, kBallRadius, 0};
+  const Box3f part{above - Vec3f{0.01F, 0.01F, 0.01F}, above + Vec3f{0.01F, 0.01F, 0.01F}};
+  const LightGrid grid = make_light_grid(tracer, {.counts = {3, 2, 3}, .parts = {part}});
+  ASSERT_FALSE(grid.positions.empty());
+  for (const Vec3f p : grid.positions) EXPECT_GT(length(p - kBall), kBallRadius);
+}
+
 TEST(LightGrid, RoomsWithWallsTurnedOutwardsStillHaveLights) {
   Scene scene;
   renderer::Mesh room = test::room({4, 3, 4}, 2);

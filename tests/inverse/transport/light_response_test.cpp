@@ -47,6 +47,13 @@ class ResponseOfARoom : public ::testing::Test {
   const LightResponse response_{tracer_, receivers_.samples, cache_, &gather_};
 };
 
+TEST_F(ResponseOfARoom, TheNearestGridLightsStandInForPlacesFarFromAll) {
+  const LightGrid corner = make_light_grid(tracer_, {.counts = {8, 6, 8}, .parts = {{{0, 0, 0}, {0.5F, 0.5F, 0.5F}}}});
+  const TransportCache cache = bake(tracer_, receivers_, corner, settings(8, 0)).cache;
+  const AllowedPlaces places(scene_, corner.region, {.boxes = {{{3, 2, 3}, {3.5F, 2.5F, 3.5F}}}});
+  EXPECT_FALSE(LightResponse(tracer_, receivers_.samples, cache, places).grid_lights_near_places().empty());
+}
+
 TEST_F(ResponseOfARoom, GradientEqualsCentralDifferences) {
   for (std::uint32_t k = 0; k < 12; ++k) {
     const Vector3d x = random_position(k, grid_.region);

@@ -1,0 +1,147 @@
+#include "inverse/solve/fill_up_lights.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "inverse/solve/insertion.h"
+#include "inverse/transport/eigen_vectors.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kShare = 0.01;       // of the brightest light, for a light that would be dark
+constexpr std::size_t kStarts = 12;   // of all arrangements from scratch
+constexpr std::size_t kFarthest = 8;  // places that are tried beside lights that make room
+
+std::vector<Vector3d> positions_of(const LightEstimates& lights) {
+  std::vector<Vector3d> positions;
+  for (const LightEstimate& light : lights) positions.push_back(light.position);
+  return positions;
+}
+
+class FillingUp {
+ public:
+  FillingUp(const LightResponse& response, const Observations& observations)
+      : response_(response), observations_(observations) {
+    for (const std::size_t j : response.grid_lights_near_places()) {
+      if (const auto place = response.places().nearest(to_eigen(response.grid().positions[j]))) {
+        candidates_.push_back(*place);
+      }
+    }
+  }
+
+  LightEstimates fill_up(LightEstimates lights, std::size_t wanted) const {
+    while (lights.size() < wanted && (add_beside(lights) || add_where_others_make_room(lights))) continue;
+    if (lights.size() < wanted) lights = arranged_anew(wanted).value_or(lights);
+    if (lights.empty()) return lights;
+    refit_intensities(observations_, evaluate_columns(response_, lights, Evaluation::kTracedVisibility), lights);
+    light_the_dark(lights);
+    return lights;
+  }
+
+ private:
+  bool fits_in(std::vector<Vector3d> positions, const Vector3d& further) const {
+    positions.push_back(further);
+    return response_.places().far_apart(positions);
+  }
+
+  // At the candidate that explains most of what is left, all others staying where they are.
+  bool add_beside(LightEstimates& lights) const {
+    const Observations left = less(observations_, response_, lights);
+    const std::vector<Vector3d> positions = positions_of(lights);
+    std::optional<LightEstimate> best;
+    double most = -1;
+    for (const Vector3d& candidate : candidates_) {
+      if (!fits_in(positions, candidate)) continue;
+      LightEstimate light{candidate, Eigen::Array3d::Zero()};
+      const double gain = fit_intensity(left, evaluate_column(response_, light, Evaluation::kTracedVisibility), light);
+      if (gain > most) best = light, most = gain;
+    }
+    if (best) lights.push_back(*best);
+    return best.has_value();
+  }
+
+  static double distance_to_any(const std::vector<Vector3d>& positions, const Vector3d& candidate) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vector3d& p : positions) least = std::min(least, (p - candidate).norm());
+    return least;
+  }
+
+  bool add_where_others_make_room(LightEstimates& lights) const {
+    const std::vector<Vector3d> positions = positions_of(lights);
+    std::vector<Vector3d> farthest = candidates_;
+    std::stable_sort(farthest.begin(), farthest.end(), [&](const Vector3d& a, const Vector3d& b) {
+      return distance_to_any(positions, a) > distance_to_any(positions, b);
+    });
+    farthest.resize(std::min(kFarthest, farthest.size()));
+    for (const Vector3d& candidate : farthest) {
+      std::vector<Vector3d> all = positions;
+      all.push_back(candidate);
+      if (!response_.places().settle(all)) continue;
+      lights = lights_at(all);
+      return true;
+    }
+    return false;
+  }
+
+  static LightEstimates lights_at(const std::vector<Vector3d>& positions) {
+    LightEstimates lights;
+    for (const Vector3d& p : positions) lights.push_back({p, Eigen::Array3d::Zero()});
+    return lights;
+  }
+
+  // Each as near to the others as may be, from one candidate or another on.
+  std::optional<LightEstimates> arranged_anew(std::size_t wanted) const {
+    const std::size_t starts = std::min(kStarts, candidates_.size());
+    for (std::size_t k = 0; k < starts; ++k) {
+      std::vector<Vector3d> positions;
+      std::optional<Vector3d> next = candidates_[k * candidates_.size() / starts];
+      if (!fits_in({}, *next)) next = nearest_that_fits(positions, *next);
+      while (next) {
+        positions.push_back(*next);
+        if (positions.size() == wanted) return lights_at(positions);
+        next = nearest_that_fits(positions, positions.front());
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Vector3d> nearest_that_fits(const std::vector<Vector3d>& positions, const Vector3d& to) const {
+    std::optional<Vector3d> nearest;
+    for (const Vector3d& candidate : candidates_) {
+      const bool nearer = !nearest || (candidate - to).norm() < (*nearest - to).norm();
+      if (nearer && fits_in(positions, candidate)) nearest = candidate;
+    }
+    return nearest;
+  }
+
+  // Of the brightest light's colour, which the rules allow.
+  static void light_the_dark(LightEstimates& lights) {
+    for (LightEstimate& light : lights) {
+      if ((light.intensity > 0).any()) continue;
+      const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
+        return a.intensity.maxCoeff() < b.intensity.maxCoeff();
+      });
+      light.intensity = kShare * brightest->intensity;
+      brightest->intensity *= 1 - kShare;
+    }
+  }
+
+  const LightResponse& response_;
+  const Observations& observations_;
+  std::vector<Vector3d> candidates_;
+};
+
+}  // namespace
+
+LightEstimates filled_up(const LightResponse& response, const Observations& observations, LightEstimates lights,
+                         std::size_t wanted) {
+  std::erase_if(lights, [](const LightEstimate& light) { return !(light.intensity > 0).any(); });
+  if (lights.size() >= wanted) return lights;
+  return FillingUp(response, observations).fill_up(std::move(lights), wanted);
+}
+
+}  // namespace chiaro::inverse

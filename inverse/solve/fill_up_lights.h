@@ -1,0 +1,13 @@
+#pragma once
+
+#include "inverse/solve/observations.h"
+
+namespace chiaro::inverse {
+
+// At least `wanted` lights where places for them are found, whatever few of them explain: those given that are not
+// dark, and further ones where they explain most of what is left; if need be all of them elsewhere. None is dark,
+// unless all are; intensities keep to the observations' rules. Enough lights come back as they are.
+LightEstimates filled_up(const LightResponse& response, const Observations& observations, LightEstimates lights,
+                         std::size_t wanted);
+
+}  // namespace chiaro::inverse
