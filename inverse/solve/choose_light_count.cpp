@@ -198,10 +198,7 @@ class Search {
     if (options_.exact_lights > 0) size = std::min(std::size_t(options_.exact_lights), best_.size() - 1);
     while (size > 0 && best_[size].lights.empty()) --size;
     if (size > 0) r.lights = best_[size].lights, r.error = best_[size].error;
-    for (std::size_t n = 1; n < best_.size(); ++n) {
-      r.error_curve.push_back(best_[n].error);
-      r.sets.push_back(best_[n].lights);
-    }
+    for (std::size_t n = 1; n < best_.size(); ++n) r.sets.push_back(best_[n].lights);
     r.refinements = refinements_;
     r.out_of_time = out_of_time_;
     return r;

@@ -23,8 +23,7 @@ struct LightCountOptions {
 struct LightCountResult {
   LightEstimates lights;
   double error = 0;
-  std::vector<double> error_curve;   // best error found with 1, 2, … lights, by the observations' weights
-  std::vector<LightEstimates> sets;  // that have it; empty where there is none
+  std::vector<LightEstimates> sets;  // the best found of 1, 2, … lights; empty where there is none
   int refinements = 0;
   bool out_of_time = false;
 };

@@ -15,11 +15,8 @@ constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiv
 
 // Makes this the light's indirect illumination of the receivers, where it stands now.
 void set_correction(const LightResponse& response, LightEstimate& light, const std::vector<Vec3f>& indirect) {
-  light.correction = -response.interpolated_indirect(light.position);
+  light.correction = column_of(indirect) - response.interpolated_indirect(light.position);
   light.corrected_at = light.position;
-  for (std::size_t i = 0; i < indirect.size(); ++i) {
-    light.correction.row(Eigen::Index(i)) += to_eigen(indirect[i]).transpose();
-  }
 }
 
 GatherOptions gather_options(const BakeSettings& settings) {

@@ -1,7 +1,6 @@
 #include "inverse/solve/fit_in_place.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <Eigen/QR>
 
@@ -36,12 +35,6 @@ Vec3f intensity_of(renderer::Light light) {
   return std::visit([](auto& l) { return intensity_of(l); }, light);
 }
 
-std::vector<renderer::SurfaceSample> samples_of(const Target& target, const ReceiverDraw& draw) {
-  std::vector<renderer::SurfaceSample> samples;
-  for (const std::size_t i : draw.chosen) samples.push_back(target.receivers.samples[i]);
-  return samples;
-}
-
 std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::Lights& lights,
                                   const std::vector<renderer::SurfaceSample>& at, const SolveOptions& options,
                                   const renderer::Control& control) {
@@ -51,8 +44,7 @@ std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::L
   const renderer::TraceOptions trace{paths, problem.bake.bounces, fresh_seed(options.seed, 6), true};
   std::vector<Column> columns;
   for (const auto& traced : trace_illumination_per_light(problem.tracer, at, unity, trace, control)) {
-    Column& column = columns.emplace_back(Eigen::Index(traced.size()), 3);
-    for (std::size_t i = 0; i < traced.size(); ++i) column.row(Eigen::Index(i)) = to_eigen(traced[i]).transpose();
+    columns.push_back(column_of(traced));
   }
   return columns;
 }
@@ -77,16 +69,13 @@ std::vector<Eigen::Array3d> intensity_intervals(const Observations& observations
 
 double error_of(const Observations& observations, const std::vector<Column>& columns,
                 const std::vector<Eigen::Array3d>& intensity) {
-  Column sum = Column::Zero(observations.wanted.rows(), 3);
-  for (std::size_t j = 0; j < columns.size(); ++j) sum += columns[j] * intensity[j].matrix().asDiagonal();
-  return relative_error(observations, sum);
+  return relative_error(observations, total_illumination(columns, intensity, observations.wanted.rows()));
 }
 
 // In the order of the scene's lights.
 std::vector<FoundLight> lit(const renderer::Lights& lights, const Observations& observations,
                             const std::vector<Column>& columns, const std::vector<Eigen::Array3d>& intensity) {
-  Column residual = -observations.wanted;
-  for (std::size_t j = 0; j < columns.size(); ++j) residual += columns[j] * intensity[j].matrix().asDiagonal();
+  const Column residual = total_illumination(columns, intensity, observations.wanted.rows()) - observations.wanted;
   const std::vector<Eigen::Array3d> half = intensity_intervals(observations, columns, residual);
   std::vector<FoundLight> found;
   double total = 0;
@@ -109,7 +98,7 @@ struct ManyObservations {
 ManyObservations observe_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
                               const renderer::Control& control) {
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const auto samples = samples_of(problem.target, draw);
+  const auto samples = samples_at(problem.target, draw.chosen);
   const int fixed_samples = verification_samples(options, samples.size());
   ManyObservations many{
       unity_columns(problem, lights, samples, options, control),

@@ -32,10 +32,7 @@ Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights) const {
   const auto indirect = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));
   Column left = -observations_.wanted;
   for (std::size_t j = 0; j < lights.size(); ++j) {
-    Column unity = response_.direct(lights[j].position);
-    for (std::size_t i = 0; i < indirect[j].size(); ++i) {
-      unity.row(Eigen::Index(i)) += to_eigen(indirect[j][i]).transpose();
-    }
+    const Column unity = response_.direct(lights[j].position) + column_of(indirect[j]);
     left += unity * lights[j].intensity.matrix().asDiagonal();
   }
   return (observations_.sqrt_weight.asDiagonal() * left).rowwise().norm();

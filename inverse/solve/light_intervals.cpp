@@ -5,8 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "renderer/core/control.h"
-
 namespace chiaro::inverse {
 namespace {
 
@@ -14,15 +12,6 @@ constexpr int kParameters = 6;      // of a light: x, y, z, red, green, blue
 constexpr double kNinety = 1.645;   // standard deviations to either side
 constexpr double kOpposed = 0.9;    // correlation, and less than its negative: one makes good what the other lacks
 constexpr double kUnknown = 1e-10;  // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
-
-std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
-  std::vector<ColumnWithGradient> columns(lights.size());
-  renderer::parallel_for(lights.size(), [&](std::size_t j) {
-    columns[j] = response.evaluate_with_gradient(lights[j].position, Evaluation::kTracedVisibility);
-    if (lights[j].correction.size() > 0) columns[j].value += lights[j].correction;
-  });
-  return columns;
-}
 
 // Receivers × parameters, by what one channel shows of them.
 Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights, int channel) {
@@ -75,7 +64,7 @@ bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimat
 LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
                                const LightEstimates& lights) {
   if (lights.empty()) return {};
-  const std::vector<ColumnWithGradient> columns = columns_of(response, lights);
+  const std::vector<ColumnWithGradient> columns = evaluate_columns_with_gradient(response, lights);
   const auto parameters = Eigen::Index(kParameters * lights.size());
   const Eigen::VectorXd weight = observations.sqrt_weight.cwiseAbs2();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(parameters, parameters);

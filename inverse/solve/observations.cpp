@@ -95,10 +95,23 @@ double contribution_norm(const Observations& observations, const Column& column,
   return (observations.sqrt_weight.asDiagonal() * column * intensity.matrix().asDiagonal()).norm();
 }
 
-Column total_illumination(const std::vector<Column>& columns, const LightEstimates& lights, Eigen::Index receivers) {
+Column column_of(const std::vector<Vec3f>& values) {
+  Column column(Eigen::Index(values.size()), 3);
+  for (std::size_t i = 0; i < values.size(); ++i) column.row(Eigen::Index(i)) = to_eigen(values[i]).transpose();
+  return column;
+}
+
+Column total_illumination(const std::vector<Column>& columns, const std::vector<Eigen::Array3d>& intensity,
+                          Eigen::Index receivers) {
   Column sum = Column::Zero(receivers, 3);
-  for (std::size_t j = 0; j < lights.size(); ++j) sum += columns[j] * lights[j].intensity.matrix().asDiagonal();
+  for (std::size_t j = 0; j < intensity.size(); ++j) sum += columns[j] * intensity[j].matrix().asDiagonal();
   return sum;
+}
+
+Column total_illumination(const std::vector<Column>& columns, const LightEstimates& lights, Eigen::Index receivers) {
+  std::vector<Eigen::Array3d> intensity;
+  for (const LightEstimate& light : lights) intensity.push_back(light.intensity);
+  return total_illumination(columns, intensity, receivers);
 }
 
 double relative_error(const Observations& observations, const Column& illumination) {
@@ -142,6 +155,16 @@ std::vector<Column> evaluate_columns(const LightResponse& response, const LightE
   std::vector<Column> columns(lights.size());
   renderer::parallel_for(lights.size(),
                          [&](std::size_t j) { columns[j] = evaluate_column(response, lights[j], evaluation); });
+  return columns;
+}
+
+std::vector<ColumnWithGradient> evaluate_columns_with_gradient(const LightResponse& response,
+                                                               const LightEstimates& lights) {
+  std::vector<ColumnWithGradient> columns(lights.size());
+  renderer::parallel_for(lights.size(), [&](std::size_t j) {
+    columns[j] = response.evaluate_with_gradient(lights[j].position, Evaluation::kTracedVisibility);
+    if (lights[j].correction.size() > 0) columns[j].value += lights[j].correction;
+  });
   return columns;
 }
 

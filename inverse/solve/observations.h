@@ -58,7 +58,12 @@ std::vector<Vec3f> light_positions(const LightEstimates& lights);
 // ‖ weighted column times intensity ‖: the light's contribution (3.5).
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity);
 
-// Illumination of all lights together; columns[j] belongs to lights[j].
+// One row per value.
+Column column_of(const std::vector<Vec3f>& values);
+
+// Illumination of all lights together; columns[j] belongs to intensity[j], or to lights[j].
+Column total_illumination(const std::vector<Column>& columns, const std::vector<Eigen::Array3d>& intensity,
+                          Eigen::Index receivers);
 Column total_illumination(const std::vector<Column>& columns, const LightEstimates& lights, Eigen::Index receivers);
 
 // D(I(p), Ψ) of eq. (3.6) over the important vertices.
@@ -80,6 +85,10 @@ Column evaluate_column(const LightResponse& response, const LightEstimate& light
 // Those of all lights, evaluated in parallel.
 std::vector<Column> evaluate_columns(const LightResponse& response, const LightEstimates& lights,
                                      Evaluation evaluation);
+
+// The same with derivatives, visibility traced.
+std::vector<ColumnWithGradient> evaluate_columns_with_gradient(const LightResponse& response,
+                                                               const LightEstimates& lights);
 
 // Of all lights together, by traced visibility and with their corrections.
 Column illumination_of(const LightResponse& response, const LightEstimates& lights);

@@ -32,14 +32,6 @@ constexpr int kLeastPaths = 4, kMostPaths = 8192;  // per receiver
 constexpr double kDarkest = 1e-20;                 // candela: a channel that shines
 constexpr double kDamping = 1e-9;                  // of the normal matrix' diagonal
 
-std::vector<ColumnWithGradient> columns_of(const LightResponse& response, const LightEstimates& lights) {
-  std::vector<ColumnWithGradient> columns(lights.size());
-  renderer::parallel_for(lights.size(), [&](std::size_t j) {
-    columns[j] = response.evaluate_with_gradient(lights[j].position, Evaluation::kTracedVisibility);
-  });
-  return columns;
-}
-
 // The light that comes by bounces where the lights stand now. It is path traced, and noisy.
 struct TracedIndirect {
   std::vector<Column> unity;  // of each light of 1 cd
@@ -58,21 +50,16 @@ TracedIndirect trace_indirect(const ManyReceivers& many, const LightEstimates& l
   const renderer::TraceOptions trace{std::clamp(int(paths), kLeastPaths, kMostPaths), many.settings.bounces,
                                      many.settings.seed, false};
   const auto traced = trace_illumination_per_light(many.tracer, at, all, trace, many.control);
-  const auto column = [&](std::size_t l) {
-    Column values(Eigen::Index(at.size()), 3);
-    for (std::size_t i = 0; i < at.size(); ++i) values.row(Eigen::Index(i)) = to_eigen(traced[l][i]).transpose();
-    return values;
-  };
   TracedIndirect indirect{{}, Column::Zero(Eigen::Index(at.size()), 3)};
   for (std::size_t j = 0; j < lights.size(); ++j) {
     // Of a channel that does not shine nothing is known, and its indirect light counts as none.
     const auto shines = (lights[j].intensity > kDarkest).eval();
     const Eigen::Array3d per_candela = shines.select(lights[j].intensity.inverse(), 0);
-    const Column unity = column(j) * per_candela.matrix().asDiagonal();
+    const Column unity = column_of(traced[j]) * per_candela.matrix().asDiagonal();
     indirect.unity.push_back(unity -
                              many.response.direct(lights[j].position) * shines.cast<double>().matrix().asDiagonal());
   }
-  for (std::size_t l = lights.size(); l < all.size(); ++l) indirect.others += column(l);
+  for (std::size_t l = lights.size(); l < all.size(); ++l) indirect.others += column_of(traced[l]);
   return indirect;
 }
 
@@ -153,7 +140,7 @@ bool take(const Eigen::VectorXd& step, const LightResponse& response, LightEstim
 void descend(const LightResponse& response, const Observations& observations, const std::vector<Column>& indirect,
              LightEstimates& lights) {
   for (int k = 0; k < kSteps; ++k) {
-    const std::vector<ColumnWithGradient> direct = columns_of(response, lights);
+    const std::vector<ColumnWithGradient> direct = evaluate_columns_with_gradient(response, lights);
     const Column residual = residual_of(observations, direct, indirect, lights);
     const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kOutlier);
     const Eigen::VectorXd step = gauss_newton_step(direct, indirect, lights, residual, weight);

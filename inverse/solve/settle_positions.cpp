@@ -28,18 +28,12 @@ class Settling {
     numerics::nelder_mead([&](const Eigen::VectorXd& position) { return error_with(moved, position); },
                           best_.lights[moved].position, Eigen::VectorXd::Constant(3, step), to_eigen(region.min),
                           to_eigen(region.max), options);
-    columns_[moved] = column(moved, best_.lights[moved].position);
+    columns_[moved] = evaluate_column(response_, best_.lights[moved], Evaluation::kTracedVisibility);
   }
 
   const SettledLights& best() const { return best_; }
 
  private:
-  Column column(std::size_t light, const Eigen::Vector3d& position) const {
-    Column c = response_.evaluate(position, Evaluation::kTracedVisibility);
-    if (best_.lights[light].correction.size() > 0) c += best_.lights[light].correction;
-    return c;
-  }
-
   // At the nearest allowed place, if that is far enough from all others.
   bool place(std::size_t moved, const Eigen::Vector3d& position, LightEstimates& lights) const {
     const auto allowed = response_.places().nearest(position);
@@ -54,7 +48,7 @@ class Settling {
     ++best_.evaluations;
     LightEstimates lights = best_.lights;
     if (!place(moved, position, lights)) return std::numeric_limits<double>::infinity();
-    columns_[moved] = column(moved, lights[moved].position);
+    columns_[moved] = evaluate_column(response_, lights[moved], Evaluation::kTracedVisibility);
     const double error = refit_intensities(observations_, columns_, lights);
     if (error < best_.error) best_.lights = std::move(lights), best_.error = error;
     return error;

@@ -34,7 +34,7 @@ constexpr int kFixedSamples = 512;                // per important vertex
 constexpr int kFixedSamplesOfMany = 32;           // per receiver of the last refinement …
 constexpr std::size_t kMany = 50000;              // … of so many at most
 constexpr double kExplained = 1.5;      // times the noise of the target, or less: more receivers hardly tell more
-constexpr double kFarFromTarget = 0.1;  // error, where rules keep lights from where they belong
+constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 constexpr double kOnSurface = 0.5;      // of a target's receivers must lie on the scene
@@ -46,13 +46,6 @@ void check_target(const SolveProblem& problem) {
                fmt::format("only {:.0f} % of the target's vertices lie on the scene: it is a target of another scene",
                            100 * fraction),
                "a target on this scene's surfaces"});
-}
-
-template <class T>
-std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_t>& indices) {
-  std::vector<T> chosen;
-  for (const std::size_t i : indices) chosen.push_back(values[i]);
-  return chosen;
 }
 
 // Rules that speak of more than a light's place.
@@ -69,7 +62,7 @@ std::vector<std::size_t> all_indices(std::size_t count) {
 std::unique_ptr<HeldOut> hold_out(const SolveProblem& problem, BakeSettings settings, const SolveOptions& options,
                                   const renderer::Control& control) {
   const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
-  const auto samples = select(problem.target.receivers.samples, draw.chosen);
+  const auto samples = samples_at(problem.target, draw.chosen);
   settings.seed = fresh_seed(options.seed, 5);
   Observations observations =
       observe_target(problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, options, control));
@@ -176,7 +169,7 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
                                  const LightEstimates& beside_surfaces, StageClock& clock) {
   const SolveProblem& problem = search.problem;
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const auto samples = select(problem.target.receivers.samples, draw.chosen);
+  const auto samples = samples_at(problem.target, draw.chosen);
   const TransportCache direct = direct_transport(search.response.grid(), samples.size());
   const LightResponse response(problem.tracer, samples, direct, search.response.places());
   Observations observations = observe_target(
@@ -370,7 +363,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const PreparedTransport transport = prepare_transport(problem, importance.chosen, control);
   result.cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
                                                 {"indirect_relative_error", transport.cache.indirect_relative_error}});
-  const auto samples = select(problem.target.receivers.samples, importance.chosen);
+  const auto samples = samples_at(problem.target, importance.chosen);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
   const Observations published = observe_target(problem.target, {importance.chosen, importance.probability}, fixed);
   if (!(published.wanted.array() > 0).any())

@@ -50,7 +50,7 @@ Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& oth
 }
 
 double clearance_of(const Mount& mount, const renderer::Scene& scene) {
-  return mount.clearance ? *mount.clearance : kDefaultClearance * double(NearestSurface(scene).bounds().diagonal());
+  return mount.clearance ? *mount.clearance : kDefaultClearance * double(surface_bounds(scene).diagonal());
 }
 
 [[noreturn]] void too_near(const Mount& mount, const renderer::Scene& scene, double surface_distance) {
@@ -61,9 +61,10 @@ double clearance_of(const Mount& mount, const renderer::Scene& scene) {
        "a distance to surfaces no larger than the clearance"});
 }
 
-NearestSurface surface_of(const renderer::Scene& scene, const Mount& mount) {
-  NearestSurface surface(scene, mount.node);
-  if (!surface.empty()) return surface;
+Box3f bounds_of(const Mount& mount, const renderer::Scene& scene) { return surface_bounds(scene, mount.node); }
+
+void check_node(const Mount& mount, const renderer::Scene& scene) {
+  if (!bounds_of(mount, scene).empty()) return;
   throw renderer::Error({scene.path, "surface to hang lights on",
                          fmt::format("no node with a mesh is named \"{}\"", mount.node), "a node's name"});
 }
@@ -72,9 +73,11 @@ NearestSurface surface_of(const renderer::Scene& scene, const Mount& mount) {
 
 LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules) {
   grid.parts = rules.boxes;
-  if (!rules.mounts.empty()) grid.region = NearestSurface(scene).bounds();
-  for (const Mount& mount : rules.mounts)
-    grid.parts.push_back(grown(surface_of(scene, mount).bounds(), clearance_of(mount, scene)));
+  if (!rules.mounts.empty()) grid.region = surface_bounds(scene);
+  for (const Mount& mount : rules.mounts) {
+    check_node(mount, scene);
+    grid.parts.push_back(grown(bounds_of(mount, scene), clearance_of(mount, scene)));
+  }
   for (const Box3f& part : grid.parts) {
     if (!grid.region) grid.region.emplace();
     grid.region->extend(part.min);
@@ -92,9 +95,10 @@ AllowedPlaces::AllowedPlaces(const renderer::Scene& scene, const Box3f& region, 
     if (const Box3f inside = intersection(box, region); !inside.empty()) boxes_.push_back(inside);
   }
   for (const Mount& mount : rules.mounts) {
-    MountedSurface mounted{surface_of(scene, mount), clearance_of(mount, scene)};
-    if (mounted.clearance < rules.surface_distance) continue;
-    mounts_.push_back(std::make_shared<MountedSurface>(std::move(mounted)));
+    check_node(mount, scene);
+    const double clearance = clearance_of(mount, scene);
+    if (clearance < rules.surface_distance) continue;
+    mounts_.push_back(std::make_shared<MountedSurface>(MountedSurface{NearestSurface(scene, mount.node), clearance}));
   }
   const bool anywhere = rules.boxes.empty() && rules.mounts.empty();
   if (anywhere) boxes_.push_back(region);

@@ -272,7 +272,10 @@ SparseTransport trace_receiver_rows(const RayTracer& tracer, const GatherOperato
 GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
                                     const GatherOptions& options, const renderer::Control& control) {
   GatherOperator gather = make_gather_points(tracer, receivers, options, control);
-  if (gather.points.empty()) return gather;
+  if (gather.points.empty()) {
+    gather.receiver_from_point = SparseTransport::from_rows({receivers.size(), std::vector<SparseTransport::Entry>{}});
+    return gather;
+  }
   gather.receiver_from_point =
       trace_receiver_rows(tracer, gather, receivers, all_of(receivers.size()), options, control);
   gather.ray_count += receivers.size() * std::size_t(options.samples);

@@ -40,21 +40,19 @@ std::vector<std::size_t> lights_near(const LightGrid& grid, const AllowedPlaces&
 
 LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<SurfaceSample> receivers,
                              const TransportCache& cache, const GatherOperator* gather)
-    : tracer_(tracer),
-      receivers_(std::move(receivers)),
-      cache_(cache),
-      interpolation_(tracer, cache.grid),
-      gather_(gather),
-      places_(cache.grid.region),
-      near_places_(lights_near(cache.grid, places_)) {
-  CHIARO_CHECK(cache.receiver_count == receivers_.size());
+    : LightResponse(tracer, std::move(receivers), cache, AllowedPlaces(cache.grid.region)) {
+  gather_ = gather;
 }
 
 LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<SurfaceSample> receivers,
                              const TransportCache& cache, AllowedPlaces places)
-    : LightResponse(tracer, std::move(receivers), cache) {
-  places_ = std::move(places);
-  near_places_ = lights_near(cache.grid, places_);
+    : tracer_(tracer),
+      receivers_(std::move(receivers)),
+      cache_(cache),
+      interpolation_(tracer, cache.grid),
+      places_(std::move(places)),
+      near_places_(lights_near(cache.grid, places_)) {
+  CHIARO_CHECK(cache.receiver_count == receivers_.size());
 }
 
 std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluation evaluation,

@@ -70,7 +70,7 @@ class LightResponse {
   std::vector<renderer::SurfaceSample> receivers_;
   const TransportCache& cache_;
   GridInterpolation interpolation_;
-  const GatherOperator* gather_;
+  const GatherOperator* gather_ = nullptr;
   AllowedPlaces places_;
   std::vector<std::size_t> near_places_;
 };

@@ -9,6 +9,20 @@ namespace chiaro::inverse {
 
 using Eigen::Vector3d;
 
+renderer::Box3f surface_bounds(const renderer::Scene& scene, const std::optional<std::string>& node) {
+  renderer::Box3f bounds;
+  for (const renderer::Instance& instance : scene.instances) {
+    if (node && instance.name != *node) continue;
+    const renderer::Mesh& mesh = scene.meshes[instance.mesh];
+    for (const renderer::Triangle& triangle : mesh.triangles) {
+      for (const auto corner : triangle) {
+        bounds.extend(transform_point(instance.world_from_object, mesh.positions[corner]));
+      }
+    }
+  }
+  return bounds;
+}
+
 NearestSurface::NearestSurface(const renderer::Scene& scene, const std::optional<std::string>& node) {
   std::vector<renderer::Box3f> boxes;
   for (const renderer::Instance& instance : scene.instances) {
@@ -23,7 +37,6 @@ NearestSurface::NearestSurface(const renderer::Scene& scene, const std::optional
       for (int k = 0; k < 3; ++k) {
         world.corners[k] = transform_point(instance.world_from_object, mesh.positions[triangle[k]]);
         box.extend(world.corners[k]);
-        bounds_.extend(world.corners[k]);
       }
       if (mirrored) std::swap(world.corners[1], world.corners[2]);
     }
@@ -31,7 +44,7 @@ NearestSurface::NearestSurface(const renderer::Scene& scene, const std::optional
   tree_ = make_box_tree(boxes);
 }
 
-NearestPoint NearestSurface::nearest_on(const WorldTriangle& triangle, const Vector3d& position) const {
+NearestPoint NearestSurface::nearest_on(const WorldTriangle& triangle, const Vector3d& position) {
   const numerics::TriangleCorners corners{to_eigen(triangle.corners[0]), to_eigen(triangle.corners[1]),
                                           to_eigen(triangle.corners[2])};
   const Vector3d weights = numerics::closest_on_triangle(corners, position);

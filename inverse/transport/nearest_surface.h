@@ -19,13 +19,14 @@ struct NearestPoint {
   bool double_sided = false;
 };
 
+// Of all drawn surfaces of the scene, or those of the node's instances; empty where there are none.
+renderer::Box3f surface_bounds(const renderer::Scene& scene, const std::optional<std::string>& node = {});
+
 class NearestSurface {
  public:
-  // All drawn surfaces of the scene, or those of the node's instances. Keeps a reference to the scene.
+  // All drawn surfaces of the scene, or those of the node's instances.
   explicit NearestSurface(const renderer::Scene& scene, const std::optional<std::string>& node = {});
 
-  bool empty() const { return triangles_.empty(); }
-  const renderer::Box3f& bounds() const { return bounds_; }
   // None where all surfaces are farther than `reach` (metres).
   std::optional<NearestPoint> find(const Eigen::Vector3d& position, double reach) const;
 
@@ -34,10 +35,9 @@ class NearestSurface {
     std::array<renderer::Vec3f, 3> corners;
     bool double_sided = false;
   };
-  NearestPoint nearest_on(const WorldTriangle& triangle, const Eigen::Vector3d& position) const;
+  static NearestPoint nearest_on(const WorldTriangle& triangle, const Eigen::Vector3d& position);
 
   std::vector<WorldTriangle> triangles_;
-  renderer::Box3f bounds_;
   BoxTree tree_;
 };
 

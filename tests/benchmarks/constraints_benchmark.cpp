@@ -23,6 +23,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/seconds_since.h"
 #include "tests/benchmarks/constraint_checks.h"
+#include "tests/benchmarks/parse_options.h"
 #include "tests/benchmarks/random_constraints.h"
 
 namespace {
@@ -49,11 +50,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--cases", options.cases);
   app.add_option("--first", options.first, "Number of the first case");
   app.add_flag("--verbose", options.verbose, "What each case is and what it came to");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Error& error) {
-    std::exit(app.exit(error));
-  }
+  parse_or_exit(app, argc, argv);
   return options;
 }
 

@@ -21,6 +21,7 @@
 #include "inverse/numerics/working_set_nnls.h"
 #include "renderer/core/seconds_since.h"
 #include "tests/benchmarks/nnls_cases.h"
+#include "tests/benchmarks/parse_options.h"
 
 namespace {
 
@@ -52,11 +53,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--only", options.only, "Cases whose names contain this");
   app.add_option("--max-edge", options.max_edge, "Of the receivers, metres");
   app.add_option("--targets", options.targets.folder, "Folder that keeps the target for later runs");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Error& error) {
-    std::exit(app.exit(error));
-  }
+  parse_or_exit(app, argc, argv);
   return options;
 }
 

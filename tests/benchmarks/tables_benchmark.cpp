@@ -17,6 +17,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tests/benchmarks/exact_illumination.h"
+#include "tests/benchmarks/parse_options.h"
 #include "tests/benchmarks/published_tables.h"
 #include "tests/benchmarks/random_light_sets.h"
 
@@ -48,11 +49,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--targets", options.targets.folder,
                  "Folder that keeps the targets for later runs with the same options");
   app.add_option("--verification-samples", options.verification_samples, "Paths per receiver; 0: as solve chooses");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Error& error) {
-    std::exit(app.exit(error));
-  }
+  parse_or_exit(app, argc, argv);
   return options;
 }
 

@@ -76,7 +76,8 @@ TEST(Observations, ErrorsAndContributionsAreTheirDefinitions) {
   Column column = Column::Ones(2, 3);
   // √(Σ_c l_c² (1 + ¼))
   EXPECT_NEAR(contribution_norm(o, column, {1, 2, 2}), std::sqrt(9 * 1.25), 1e-12);
-  const Column sum = total_illumination({column, 2 * column}, {{{0, 0, 0}, {1, 2, 3}}, {{0, 0, 0}, {1, 0, 1}}}, 2);
+  const LightEstimates lights{{{0, 0, 0}, {1, 2, 3}}, {{0, 0, 0}, {1, 0, 1}}};
+  const Column sum = total_illumination({column, 2 * column}, lights, 2);
   EXPECT_EQ(sum(1, 0), 3);
   EXPECT_EQ(sum(1, 1), 2);
   EXPECT_EQ(sum(0, 2), 5);

@@ -90,6 +90,10 @@ TEST(GatherOperator, WithoutBouncesBringsNothing) {
   const GatherOperator gather = make_gather_operator(tracer, receivers, {.bounces = 0});
   EXPECT_TRUE(gather.points.empty());
   EXPECT_EQ(gather.ray_count, 0U);
+  const std::vector<Vec3f> light{{2, 2, 2}};
+  const auto indirect = indirect_illumination_by_light(tracer, gather, light);
+  ASSERT_EQ(indirect.size(), 1U);
+  EXPECT_EQ(indirect[0], std::vector<Vec3f>(receivers.size()));
 }
 
 TEST(GatherOperator, AdjointGivesTheSameLight) {
