@@ -18,6 +18,7 @@ namespace {
 namespace ocio = OCIO_NAMESPACE;
 
 constexpr std::size_t kPixelsPerTask = 65536;
+constexpr const char* kNoLook = "none";
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -37,14 +38,51 @@ std::vector<std::string> color_spaces(const ocio::ConstConfigRcPtr& config) {
   return names;
 }
 
-// The config's scene-linear Rec.709: by the names that configs in use give it, or what they work in.
-std::string rec709_space(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path) {
-  for (const char* name : {"lin_rec709", "Linear Rec.709 (sRGB)", "lin_rec709_scene", "Linear Rec.709",
-                           "Utility - Linear - sRGB", "Utility - Linear - Rec.709", "scene_linear"}) {
-    if (config->getColorSpace(name)) return name;
+struct KnownSpace {
+  const char* name;  // names that configs in use give it, or a role
+  std::array<float, 8> chromaticities;
+};
+
+constexpr std::array<float, 8> kRec709{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+constexpr std::array<float, 8> kAp0{0.7347F, 0.2653F, 0, 1, 0.0001F, -0.0770F, 0.32168F, 0.33767F};
+constexpr std::array<float, 8> kAp1{0.713F, 0.293F, 0.165F, 0.830F, 0.128F, 0.044F, 0.32168F, 0.33767F};
+
+constexpr KnownSpace kKnownSpaces[] = {{"lin_rec709", kRec709},
+                                       {"Linear Rec.709 (sRGB)", kRec709},
+                                       {"lin_rec709_scene", kRec709},
+                                       {"lin_rec709_srgb", kRec709},
+                                       {"Linear Rec.709", kRec709},
+                                       {"lin_srgb", kRec709},
+                                       {"Utility - Linear - sRGB", kRec709},
+                                       {"Utility - Linear - Rec.709", kRec709},
+                                       {"aces_interchange", kAp0},
+                                       {"ACES2065-1", kAp0},
+                                       {"ACES - ACES2065-1", kAp0},
+                                       {"ACEScg", kAp1},
+                                       {"ACES - ACEScg", kAp1},
+                                       {"scene_linear", kRec709}};
+
+// Where colours enter and leave the config: a scene-linear space whose primaries are known. The role scene_linear says
+// nothing of its primaries, so it comes last, and then counts as Rec.709.
+const KnownSpace& entry_space(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path) {
+  for (const KnownSpace& space : kKnownSpaces) {
+    if (config->getColorSpace(space.name)) return space;
   }
   throw Error({path.string(), "colorspaces", "has no scene-linear Rec.709",
-               fmt::format("lin_rec709 or the role scene_linear, besides {}", fmt::join(color_spaces(config), ", "))});
+               fmt::format("lin_rec709, or the role aces_interchange or scene_linear, besides {}",
+                           fmt::join(color_spaces(config), ", "))});
+}
+
+void append_rec709_to(const KnownSpace& space, ocio::GroupTransform& group) {
+  if (space.chromaticities == kRec709) return;
+  const Rec709FromSpace matrix = rec709_from_chromaticities(space.chromaticities);
+  double m44[16] = {};
+  for (std::size_t i = 0; i < 3; ++i) std::copy(matrix[i].begin(), matrix[i].end(), m44 + 4 * i);
+  m44[15] = 1;
+  const ocio::MatrixTransformRcPtr transform = ocio::MatrixTransform::Create();
+  transform->setMatrix(m44);
+  transform->setDirection(ocio::TRANSFORM_DIR_INVERSE);
+  group.appendTransform(transform);
 }
 
 void check_choice(const std::string& name, const std::vector<std::string>& choices, const std::string& place,
@@ -67,8 +105,8 @@ std::vector<std::string> views_of(const ocio::ConstConfigRcPtr& config, const st
   return names;
 }
 
-template <class Transform>
-ocio::ConstCPUProcessorRcPtr cpu_processor(const ocio::ConstConfigRcPtr& config, const Transform& transform,
+ocio::ConstCPUProcessorRcPtr cpu_processor(const ocio::ConstConfigRcPtr& config,
+                                           const ocio::ConstTransformRcPtr& transform,
                                            const std::filesystem::path& path) {
   try {
     return config->getProcessor(transform)->getDefaultCPUProcessor();
@@ -77,25 +115,58 @@ ocio::ConstCPUProcessorRcPtr cpu_processor(const ocio::ConstConfigRcPtr& config,
   }
 }
 
-ocio::ConstCPUProcessorRcPtr view_processor(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path,
-                                            const ViewOptions& options) {
+std::vector<std::string> looks_of(const ocio::ConstConfigRcPtr& config) {
+  std::vector<std::string> names;
+  for (int i = 0; i < config->getNumLooks(); ++i) names.emplace_back(config->getLookNameByIndex(i));
+  return names;
+}
+
+void append_look(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path, const std::string& look,
+                 ocio::GroupTransform& group) {
+  check_choice(look, looks_of(config), "look", path);
+  const char* space = entry_space(config, path).name;
+  const ocio::LookTransformRcPtr transform = ocio::LookTransform::Create();
+  transform->setSrc(space);
+  transform->setDst(space);
+  transform->setLooks(look.c_str());
+  group.appendTransform(transform);
+}
+
+// From scene-linear Rec.709 to the view.
+ocio::GroupTransformRcPtr view_transform(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path,
+                                         const ViewOptions& options) {
   const std::string display = options.display.empty() ? config->getDefaultDisplay() : options.display;
   check_choice(display, displays_of(config), "display", path);
   const std::string view = options.view.empty() ? config->getDefaultView(display.c_str()) : options.view;
   check_choice(view, views_of(config, display), fmt::format("view of display \"{}\"", display), path);
+  ocio::GroupTransformRcPtr group = ocio::GroupTransform::Create();
+  append_rec709_to(entry_space(config, path), *group);
+  if (!options.look.empty() && options.look != kNoLook) append_look(config, path, options.look, *group);
   const ocio::DisplayViewTransformRcPtr transform = ocio::DisplayViewTransform::Create();
-  transform->setSrc(rec709_space(config, path).c_str());
+  transform->setSrc(entry_space(config, path).name);
   transform->setDisplay(display.c_str());
   transform->setView(view.c_str());
-  return cpu_processor(config, transform, path);
+  transform->setLooksBypass(!options.look.empty());
+  group->appendTransform(transform);
+  return group;
 }
 
-ocio::ConstCPUProcessorRcPtr space_processor(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path,
-                                             const std::string& from, const std::string& to) {
+// From scene-linear Rec.709 to a space; data is never converted.
+ocio::GroupTransformRcPtr space_transform(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path,
+                                          const std::string& space) {
+  ocio::GroupTransformRcPtr group = ocio::GroupTransform::Create();
+  if (config->getColorSpace(space.c_str())->isData()) return group;
+  append_rec709_to(entry_space(config, path), *group);
   const ocio::ColorSpaceTransformRcPtr transform = ocio::ColorSpaceTransform::Create();
-  transform->setSrc(from.c_str());
-  transform->setDst(to.c_str());
-  return cpu_processor(config, transform, path);
+  transform->setSrc(entry_space(config, path).name);
+  transform->setDst(space.c_str());
+  group->appendTransform(transform);
+  return group;
+}
+
+ocio::GroupTransformRcPtr inverted(ocio::GroupTransformRcPtr group) {
+  group->setDirection(ocio::TRANSFORM_DIR_INVERSE);
+  return group;
 }
 
 void check_space(const ocio::ConstConfigRcPtr& config, const std::string& space, const std::filesystem::path& path) {
@@ -143,6 +214,35 @@ std::vector<Triple> color_triples(const Image& image, const std::vector<std::str
   return triples;
 }
 
+Image rgb_of(const Image& image) {
+  if (image.channel_count() >= 3) return {image.width, image.height, {"R", "G", "B"}, gather(image, {0, 1, 2})};
+  throw Error({"image", "", fmt::format("has {} channels", image.channel_count()), "at least R, G, B"});
+}
+
+// Greys go there and back: each |forward(inverse(grey)) − grey| ≤ 0.02.
+bool inverts(const ocio::CPUProcessor& inverse, const ocio::CPUProcessor& forward) {
+  std::vector<float> greys;
+  for (const float grey : {0.2F, 0.4F, 0.6F, 0.8F}) greys.insert(greys.end(), 3, grey);
+  std::vector<float> again = greys;
+  apply(inverse, again);
+  apply(forward, again);
+  return std::equal(again.begin(), again.end(), greys.begin(),
+                    [](float a, float b) { return std::abs(a - b) <= 0.02F; });
+}
+
+ocio::ConstCPUProcessorRcPtr inverse_view_processor(const ocio::ConstConfigRcPtr& config,
+                                                    const std::filesystem::path& path, const ViewOptions& options) {
+  const auto forward = cpu_processor(config, view_transform(config, path, options), path);
+  ocio::ConstCPUProcessorRcPtr inverse;
+  try {
+    inverse = config->getProcessor(inverted(view_transform(config, path, options)))->getDefaultCPUProcessor();
+  } catch (const ocio::Exception&) {
+  }
+  if (inverse && inverts(*inverse, *forward)) return inverse;
+  const std::string view = options.view.empty() ? "the default view" : fmt::format("view \"{}\"", options.view);
+  throw Error({path.string(), "", view + " has no inverse", "a view that can be undone, or a colour space"});
+}
+
 float display_value(float value) { return std::isnan(value) ? 0 : std::clamp(value, 0.0F, 1.0F); }
 
 std::optional<std::filesystem::path> data_config() {
@@ -160,6 +260,7 @@ std::optional<std::filesystem::path> data_config() {
 }
 
 std::filesystem::path checked(const std::filesystem::path& config, const char* where) {
+  if (config.string().starts_with("ocio://")) return config;
   std::error_code ignored;
   if (std::filesystem::is_regular_file(config, ignored)) return config;
   throw Error({config.string(), where, "no such file", "an OpenColorIO config"});
@@ -175,23 +276,32 @@ std::filesystem::path find_ocio_config(const std::optional<std::filesystem::path
 }
 
 Image apply_display_view(const Image& image, const std::filesystem::path& config, const ViewOptions& options) {
-  if (image.channel_count() < 3) {
-    throw Error({"image", "", fmt::format("has {} channels", image.channel_count()), "at least R, G, B"});
-  }
-  const ocio::ConstCPUProcessorRcPtr processor = view_processor(load_config(config), config, options);
-  std::vector<float> rgb = gather(image, {0, 1, 2});
+  Image shown = rgb_of(image);
+  const ocio::ConstConfigRcPtr loaded = load_config(config);
+  const auto processor = cpu_processor(loaded, view_transform(loaded, config, options), config);
   const float gain = std::exp2(options.exposure);
-  for (float& value : rgb) value *= gain;
+  for (float& value : shown.pixels) value *= gain;
+  apply(*processor, shown.pixels);
+  std::transform(shown.pixels.begin(), shown.pixels.end(), shown.pixels.begin(), display_value);
+  return shown;
+}
+
+Image to_rec709_from_display_view(const Image& image, const std::filesystem::path& config, const ViewOptions& options) {
+  std::vector<float> rgb = rgb_of(image).pixels;
+  const auto processor = inverse_view_processor(load_config(config), config, options);
   apply(*processor, rgb);
-  std::transform(rgb.begin(), rgb.end(), rgb.begin(), display_value);
-  return {image.width, image.height, {"R", "G", "B"}, std::move(rgb)};
+  const float gain = std::exp2(-options.exposure);
+  for (float& value : rgb) value *= gain;
+  Image linear = image;
+  scatter(rgb, {0, 1, 2}, linear);
+  return linear;
 }
 
 void convert_from_rec709(Image& image, const std::filesystem::path& config, const std::string& space,
                          const std::vector<std::string>& color_layers) {
   const ocio::ConstConfigRcPtr loaded = load_config(config);
   check_space(loaded, space, config);
-  const auto processor = space_processor(loaded, config, rec709_space(loaded, config), space);
+  const auto processor = cpu_processor(loaded, space_transform(loaded, config, space), config);
   for (const Triple& triple : color_triples(image, color_layers)) {
     std::vector<float> rgb = gather(image, triple);
     apply(*processor, rgb);
@@ -199,10 +309,18 @@ void convert_from_rec709(Image& image, const std::filesystem::path& config, cons
   }
 }
 
+void convert_to_rec709(Image& image, const std::filesystem::path& config, const std::string& space) {
+  std::vector<float> rgb = rgb_of(image).pixels;
+  const ocio::ConstConfigRcPtr loaded = load_config(config);
+  check_space(loaded, space, config);
+  apply(*cpu_processor(loaded, inverted(space_transform(loaded, config, space)), config), rgb);
+  scatter(rgb, {0, 1, 2}, image);
+}
+
 std::optional<std::array<float, 8>> chromaticities_of(const std::filesystem::path& config, const std::string& space) {
   const ocio::ConstConfigRcPtr loaded = load_config(config);
   check_space(loaded, space, config);
-  const auto processor = space_processor(loaded, config, space, rec709_space(loaded, config));
+  const auto processor = cpu_processor(loaded, inverted(space_transform(loaded, config, space)), config);
   // Unit primaries, and twice as much of them: a linear space doubles.
   std::vector<float> rgb{1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0, 0, 2, 0, 0, 0, 2};
   apply(*processor, rgb);

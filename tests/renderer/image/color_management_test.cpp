@@ -43,6 +43,38 @@ colorspaces:
     to_scene_reference: !<MatrixTransform> {matrix: [0.5, 0.5, 0, 0, 0.5, -0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}
 )";
 
+// Works in ACEScg, and has Rec.709 by no name; only its interchange role says where colours are.
+constexpr const char* kAcesConfig = R"(ocio_profile_version: 2
+roles:
+  default: work
+  scene_linear: work
+  aces_interchange: exchange
+displays:
+  first:
+    - !<View> {name: working, colorspace: work}
+    - !<View> {name: graded, colorspace: work, looks: doubled}
+    - !<View> {name: grey, colorspace: grey}
+    - !<View> {name: clipped, colorspace: clipped}
+looks:
+  - !<Look> {name: doubled, process_space: work, transform: !<MatrixTransform> {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]}}
+  - !<Look> {name: halved, process_space: work, transform: !<MatrixTransform> {matrix: [0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}}
+colorspaces:
+  - !<ColorSpace> {name: exchange, isdata: false}
+  - !<ColorSpace>
+    name: work
+    isdata: false
+    to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}
+  - !<ColorSpace>
+    name: grey
+    isdata: false
+    from_scene_reference: !<MatrixTransform> {matrix: [0.3, 0.3, 0.4, 0, 0.3, 0.3, 0.4, 0, 0.3, 0.3, 0.4, 0, 0, 0, 0, 1]}
+  - !<ColorSpace>
+    name: clipped
+    isdata: false
+    from_scene_reference: !<RangeTransform> {min_in_value: 0, max_in_value: 0.5, min_out_value: 0, max_out_value: 0.5}
+  - !<ColorSpace> {name: data, isdata: true}
+)";
+
 // $OCIO and $CHIARO_DATA as they were, when the test ends.
 class Environment {
  public:
@@ -127,6 +159,111 @@ TEST(ColorManagement, OnlyTheLayersNamedAreConverted) {
   EXPECT_NEAR(image.pixels[4], 0.0702F, 1e-3F);
   EXPECT_EQ(image.pixels[6], 1) << "normals are no colours";
   EXPECT_EQ(image.pixels[7], 0);
+}
+
+// The values are those of Rec.709's red in AP1, by colour-science's RGB_to_RGB with the Bradford transform.
+TEST(ColorManagement, ConfigsThatWorkInOtherPrimariesGetTheirs) {
+  const TemporaryFolder folder;
+  const auto config = folder.write("config.ocio", kAcesConfig);
+  Image image = one_pixel({"R", "G", "B"}, {1, 0, 0});
+  const Image shown = renderer::apply_display_view(image, config, {});
+  const float expected[3] = {0.6131F, 0.0702F, 0.0206F};
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown.pixels[c], expected[c], 2e-4F);
+  convert_from_rec709(image, config, "scene_linear", {""});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.pixels[c], expected[c], 2e-4F);
+  convert_to_rec709(image, config, "scene_linear");
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.pixels[c], c == 0 ? 1 : 0, 1e-5F);
+  const auto chromaticities = renderer::chromaticities_of(config, "scene_linear");
+  ASSERT_TRUE(chromaticities.has_value());
+  EXPECT_FLOAT_EQ((*chromaticities)[0], 0.713F);
+}
+
+TEST(ColorManagement, ALookTakesThePlaceOfTheViews) {
+  const TemporaryFolder folder;
+  const auto config = folder.write("config.ocio", kAcesConfig);
+  const Image image = one_pixel({"R", "G", "B"}, {0.25F, 0.25F, 0.25F});
+  const auto shown = [&](const char* look) {
+    return renderer::apply_display_view(image, config, {"", "graded", 0, look}).pixels[1];
+  };
+  EXPECT_NEAR(shown(""), 0.5F, 1e-4F);
+  EXPECT_NEAR(shown("none"), 0.25F, 1e-4F);
+  EXPECT_NEAR(shown("halved"), 0.125F, 1e-4F);
+  EXPECT_NE(error_of([&] { shown("other"); }).find("doubled, halved"), std::string::npos);
+}
+
+TEST(ColorManagement, ANamedSpaceBecomesRec709) {
+  const TemporaryFolder folder;
+  const auto config = folder.write("config.ocio", kConfig);
+  Image image = one_pixel({"R", "G", "B", "A"}, {0.5F, 0.25F, 1, 0.5F});
+  convert_to_rec709(image, config, "gamma2");
+  EXPECT_NEAR(image.pixels[0], 0.25F, 1e-4F);
+  EXPECT_NEAR(image.pixels[1], 0.0625F, 1e-4F);
+  EXPECT_EQ(image.pixels[3], 0.5F) << "alpha is no colour";
+  EXPECT_NE(error_of([&] { convert_to_rec709(image, config, "nowhere"); }).find("gamma2"), std::string::npos);
+  Image grey = one_pixel({"Y"}, {1});
+  EXPECT_NE(error_of([&] { convert_to_rec709(grey, config, "gamma2"); }), "");
+}
+
+TEST(ColorManagement, DataIsNeverConverted) {
+  const TemporaryFolder folder;
+  const auto config = folder.write("config.ocio", kAcesConfig);
+  Image image = one_pixel({"R", "G", "B"}, {0.5F, 0.25F, 0});
+  convert_to_rec709(image, config, "data");
+  EXPECT_EQ(image.pixels, (std::vector<float>{0.5F, 0.25F, 0}));
+}
+
+// Colours that the views clip nowhere.
+Image some_colors() {
+  Image image = renderer::make_image(6, 6, {"R", "G", "B", "A"});
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 6; ++x) {
+      const float color[4] = {0.1F + 0.05F * float(x), 0.1F + 0.05F * float(y), 0.15F + 0.02F * float(x + y), 0.5F};
+      std::copy(color, color + 4, image.at(x, y));
+    }
+  }
+  return image;
+}
+
+void expect_view_inverts(const std::filesystem::path& config, const renderer::ViewOptions& options) {
+  const Image image = some_colors();
+  Image shown = renderer::make_image(image.width, image.height, image.channel_names);
+  const Image colors = renderer::apply_display_view(image, config, options);
+  for (int i = 0; i < 36; ++i) {
+    std::copy(&colors.pixels[3 * i], &colors.pixels[3 * i] + 3, &shown.pixels[4 * i]);
+    shown.pixels[4 * i + 3] = image.pixels[4 * i + 3];
+  }
+  const Image again = renderer::to_rec709_from_display_view(shown, config, options);
+  EXPECT_EQ(again.channel_names, image.channel_names);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    ASSERT_NEAR(again.pixels[i], image.pixels[i], 1e-3F) << options.view << " " << i;
+  }
+}
+
+TEST(ColorManagement, ViewsAreUndone) {
+  const TemporaryFolder folder;
+  const auto gamma = folder.write("gamma.ocio", kConfig), aces = folder.write("aces.ocio", kAcesConfig);
+  expect_view_inverts(gamma, {"", "", 0.5F});
+  expect_view_inverts(aces, {"", "working", 0});
+  expect_view_inverts(aces, {"", "graded", -1});
+  expect_view_inverts(aces, {"", "working", 1, "halved"});
+  const auto ours = std::filesystem::path(CHIARO_SOURCE_DIR) / "scenes/color/config.ocio";
+  for (const char* display : {"sRGB", "Rec.1886"}) {
+    for (const char* view : {"ACES 1.0 - SDR Video", "Un-tone-mapped", "Raw"}) {
+      expect_view_inverts(ours, {display, view, -1});
+    }
+  }
+}
+
+TEST(ColorManagement, ViewsThatCannotBeUndoneAreRefused) {
+  const TemporaryFolder folder;
+  const auto config = folder.write("config.ocio", kAcesConfig);
+  for (const char* view : {"grey", "clipped"}) {
+    const std::string message = error_of([&] {
+      renderer::to_rec709_from_display_view(some_colors(), config, {"", view, 0});
+    });
+    EXPECT_NE(message.find("config.ocio"), std::string::npos) << message;
+    EXPECT_NE(message.find(std::string("\"") + view + "\" has no inverse"), std::string::npos) << message;
+  }
 }
 
 TEST(ColorManagement, ChromaticitiesAreKnownForRgbSpacesInUse) {
