@@ -100,12 +100,12 @@ inverse::Target found_target(const inverse::Target& target, const inverse::Solve
   return found;
 }
 
-void print_summary(Session& session, const RunCommand& options, const inverse::SolveResult& result,
-                   const JsonObject& summary, std::size_t frames) {
+void print_summary(Session& session, const RunCommand& options, const std::string& text, const JsonObject& summary,
+                   std::size_t frames) {
   renderer::write_file_atomically(options.folder() / "summary.json", json_text(without_seconds(summary)));
-  session.finish(summary, solve_text(result) + aligned_rows({{"frames", fmt::format("{}", frames)},
-                                                             {"time", text_of_seconds(session.seconds())},
-                                                             {"written", options.output}}));
+  session.finish(summary, text + aligned_rows({{"frames", fmt::format("{}", frames)},
+                                               {"time", text_of_seconds(session.seconds())},
+                                               {"written", options.output}}));
 }
 
 void make_folders(const RunCommand& options) {
@@ -115,16 +115,21 @@ void make_folders(const RunCommand& options) {
 
 int run_run(RunCommand options) {
   Session session(options.common);
+  options.choices.target.encoding.view = options.frame.view;
+  require_a_target(options.choices.target);
   settle_constraints(options.choices);
   require_not_a_file(options.folder());
   require_color_choices(options.frame, true);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
-  const inverse::Target target = load_solve_target(stage, options.choices);
+  const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
+  const inverse::Target& target = wanted.target;
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   make_folders(options);
   JsonObject summary;
+  if (!wanted.from_file) inverse::save_target(target, options.folder() / "target.glb");
+  if (!wanted.images.empty()) summary.emplace_back("target_images", wanted.images);
   if (problem.lights_in_place.empty()) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
     problem.cache_file = options.folder() / "cache.exr";
@@ -140,7 +145,7 @@ int run_run(RunCommand options) {
   summary.emplace_back("comparison", comparison_summary(comparison, target.receivers.positions[comparison.max_at]));
   summary.emplace_back("frames", frames);
   summary.emplace_back("seconds", session.seconds());
-  print_summary(session, options, result, summary, frames.size());
+  print_summary(session, options, wanted.text + solve_text(result), summary, frames.size());
   return kDone;
 }
 

@@ -18,7 +18,7 @@ namespace {
 struct SolveCommand {
   CommonOptions common;
   SolveChoices choices;
-  std::string scene, cache, report, from, output;
+  std::string scene, cache, report, from, save_target, output;
 };
 
 // The report's folder is made after the inputs are found to be good.
@@ -37,10 +37,13 @@ void use_cache(const SolveCommand& options, inverse::SolveProblem& problem) {
   if (!options.choices.transport.bounces) problem.bake.bounces = header.settings.bounces;
 }
 
-void print_summary(Session& session, const SolveCommand& options, const inverse::SolveResult& result) {
+void print_summary(Session& session, const SolveCommand& options, const WantedTarget& wanted,
+                   const inverse::SolveResult& result) {
+  JsonObject summary = solve_summary(result);
+  if (!wanted.images.empty()) summary.emplace_back("target_images", wanted.images);
   const std::string written =
       fmt::format("  written  {}, {}\n", options.output, beside(options.output, ".json").string());
-  session.finish(solve_summary(result), solve_text(result) + written);
+  session.finish(summary, wanted.text + solve_text(result) + written);
 }
 
 void refuse_what_excludes_each_other(const SolveCommand& options) {
@@ -56,22 +59,25 @@ void refuse_what_excludes_each_other(const SolveCommand& options) {
 
 int run_solve(SolveCommand options) {
   Session session(options.common);
+  require_a_target(options.choices.target);
   settle_constraints(options.choices);
   refuse_what_excludes_each_other(options);
   require_writable(options.output);
   require_writable(beside(options.output, ".json"));
+  if (!options.save_target.empty()) require_writable(options.save_target);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
-  const inverse::Target target = load_solve_target(stage, options.choices);
+  const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
+  if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   session.stop_if_interrupted();
-  inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
+  inverse::SolveProblem problem = solve_problem(stage, wanted.target, options.choices, options.common, session);
   use_cache(options, problem);
   inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
   if (!options.from.empty()) solving.earlier = inverse::load_error_curve(options.from);
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   save_found_lights(options.scene, result, options.output, options.choices.constraints.keep_lights);
-  print_summary(session, options, result);
+  print_summary(session, options, wanted, result);
   return kDone;
 }
 
@@ -84,6 +90,10 @@ CommandRun add_solve(CLI::App& command) {
              {"-o,--output", "LIGHTS.glb", "SCENE with the lights found; LIGHTS.json, the lights alone, beside it"},
              options->output, {".glb", ".gltf"});
   add_solve_options(command, options->choices);
+  add_view_options(command, options->choices.target.encoding.view);
+  add_output(command, {"--save-target", "T.glb", "What the pictures and the target come to, as a target file"},
+             options->save_target, {".glb", ".gltf"})
+      ->required(false);
   add_text(command, {"--cache", "C.exr", "A transport cache; without one solve bakes by itself"}, options->cache);
   add_text(command,
            {"--from", "SOLVE.json",
@@ -96,6 +106,7 @@ CommandRun add_solve(CLI::App& command) {
   set_examples(command,
                "  chiaro solve room.glb --target painted.glb --cache room.exr -o lights.glb\n"
                "  chiaro solve room.glb --target painted.glb -o lights.glb --max-lights 5 --report report\n"
+               "  chiaro solve room.glb --target-image Camera=painted.png --exposure 3 -o lights.glb\n"
                "  chiaro solve room.glb --target painted.glb -o three.glb --from solve.json --lights 3");
   return [options] { return run_solve(*options); };
 }

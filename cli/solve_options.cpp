@@ -91,19 +91,11 @@ void settle_constraints(SolveChoices& choices) {
 }
 
 void add_solve_options(CLI::App& command, SolveChoices& choices) {
-  add_input(command, {"--target", "T.glb", "The painted illumination"}, choices.target);
-  add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, choices.target_scale,
-             kPositive);
+  add_target_options(command, choices.target);
   add_method_options(command, choices.solve);
   add_grid_options(command, choices.grid);
   add_constraint_options(command, choices.constraint_options);
   add_transport_options(command, choices.transport, "Gather rays per receiver of a bake");
-}
-
-inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& choices) {
-  inverse::Target target = inverse::load_target(choices.target, choices.target_scale);
-  require_same_scene(*stage.tracer, target.receivers, choices.target);
-  return target;
 }
 
 inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,

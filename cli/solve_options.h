@@ -6,14 +6,14 @@
 #include "cli/constraint_options.h"
 #include "cli/json_output.h"
 #include "cli/scene_loading.h"
+#include "cli/target_options.h"
 #include "cli/transport_options.h"
 #include "inverse/solve/solve.h"
 
 namespace chiaro::cli {
 
 struct SolveChoices {
-  std::string target;
-  float target_scale = 1;  // cd/m² per COLOR_0, where a target has no _ILLUMINATION
+  TargetChoices target;
   ConstraintOptions constraint_options;
   GridOptions grid;
   TransportOptions transport;
@@ -25,8 +25,6 @@ void add_solve_options(CLI::App& command, SolveChoices& choices);
 
 // Fills in the constraints, from options and file. UsageError or Error where they are wrong.
 void settle_constraints(SolveChoices& choices);
-
-inverse::Target load_solve_target(const LoadedStage& stage, const SolveChoices& choices);
 
 // The problem without a cache file. It refers to the stage and the target.
 inverse::SolveProblem solve_problem(const LoadedStage& stage, const inverse::Target& target,

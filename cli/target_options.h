@@ -1,0 +1,47 @@
+#pragma once
+// What is wanted: a target file, painted pictures, or several of them together.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/json_output.h"
+#include "cli/painted_picture.h"
+#include "cli/scene_loading.h"
+#include "cli/transport_options.h"
+#include "inverse/target/painted_frame.h"
+#include "inverse/target/target.h"
+
+namespace chiaro::cli {
+
+// "CAMERA=IMAGE"; without CAMERA, the scene's first.
+struct NamedFile {
+  std::string name, file;
+};
+
+struct TargetChoices {
+  std::string file;
+  float scale = 1;         // cd/m² per COLOR_0, where a target file has no _ILLUMINATION
+  SurfaceOptions surface;  // where there is no target file
+  std::vector<NamedFile> images, masks;
+  inverse::PictureContent content = inverse::PictureContent::kBeauty;
+  PictureEncoding encoding;
+};
+
+// All but the view options, which belong to `choices.encoding.view`.
+void add_target_options(CLI::App& command, TargetChoices& choices);
+
+// UsageError where they contradict each other.
+void require_a_target(const TargetChoices& choices);
+
+struct WantedTarget {
+  inverse::Target target;
+  bool from_file = false;  // and nothing else
+  JsonList images;         // what was made of each picture
+  std::string text;        // the same for people
+};
+
+// Error where a file is of another scene, or where the pictures show nothing that could be wanted.
+WantedTarget load_wanted_target(const LoadedStage& stage, const TargetChoices& choices, Session& session);
+
+}  // namespace chiaro::cli
