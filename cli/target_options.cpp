@@ -162,6 +162,7 @@ class TargetLoading {
 
   void read_picture(const NamedFile& image) {
     const renderer::Camera camera = choose_camera(*stage_.scene, image.name, session_);
+    cameras_.push_back(camera);
     PaintedPicture picture = load_painted_picture(image.file, choices_.encoding);
     apply_masks(choices_, image, picture);
     warn_of_picture(image, picture, camera, session_);
@@ -183,8 +184,20 @@ class TargetLoading {
     }
   }
 
+  void leave_out_hidden(inverse::Target& target) const {
+    std::vector<bool> seen(target.receivers.size());
+    for (const renderer::Camera& camera : cameras_) {
+      const std::vector<bool> here = inverse::receivers_seen(*stage_.tracer, target.receivers, camera);
+      for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || here[i];
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (!seen[i]) target.weight[i] = 0;
+    }
+  }
+
   inverse::Target from_values(const inverse::Receivers& receivers) const {
     inverse::TargetFromValues result = inverse::target_from_values(receivers, values_, session_.control());
+    leave_out_hidden(result.target);
     const auto& weight = result.target.weight;
     for (std::size_t i = 0; i < weight.size(); ++i) {
       if (weight[i] > 0 && max_component(result.target.illumination[i]) > 0) return std::move(result.target);
@@ -196,6 +209,7 @@ class TargetLoading {
   const LoadedStage& stage_;
   const TargetChoices& choices_;
   Session& session_;
+  std::vector<renderer::Camera> cameras_;
   std::vector<inverse::SurfaceValue> values_;
   WantedTarget wanted_;
 };
