@@ -22,7 +22,7 @@ constexpr double kTowardsMean = 0.1;
 constexpr double kTolerance = 1e-8;  // relative residual of the linear system, or less
 // Variance of an interpolating fit against that of the mean of the values around a receiver, on regular triangles.
 constexpr double kFitVariance = 3.5;
-constexpr double kPriorCount = 4;  // values of the picture's common scatter that a receiver's own is mixed with
+constexpr double kMuchScatter = 2;  // times the common one: what noise does not explain
 
 struct PlacedValue {
   ReceiverWeights at;
@@ -112,27 +112,41 @@ Eigen::RowVector3d interpolated(const Colors& at_receivers, const ReceiverWeight
   return sum;
 }
 
-// Root mean square over the channels.
-std::vector<float> standard_errors(const std::vector<PlacedValue>& values, const Sums& sums, const Colors& fitted) {
+// Mean square of what the interpolation leaves of the values around each receiver, over the channels.
+Eigen::VectorXd scatter_around(const std::vector<PlacedValue>& values, const Sums& sums, const Colors& fitted) {
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(sums.weight.size());
-  double all_squares = 0, all_light = 0;
   for (const PlacedValue& value : values) {
-    const Eigen::RowVector3d v = to_eigen(value.illumination).transpose();
-    const double square = (v - interpolated(fitted, value.at)).squaredNorm() / 3;
+    const Eigen::RowVector3d left = to_eigen(value.illumination).transpose() - interpolated(fitted, value.at);
     for (int k = 0; k < 3; ++k) {
-      squares[value.at.receivers[k]] += value.weight * double(value.at.weights[k]) * square;
+      squares[value.at.receivers[k]] += value.weight * double(value.at.weights[k]) * left.squaredNorm() / 3;
     }
-    all_squares += value.weight * square;
-    all_light += value.weight * v.squaredNorm() / 3;
   }
-  const double common = all_light > 0 ? all_squares / all_light : 0;
+  return (sums.weight.array() > 0).select(squares.array() / sums.weight.array(), 0);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Root mean square over the channels. The values' noise is taken to be relative, and the median of their scatter; what
+// is beyond it, as across the edge of a shadow, no interpolation shows: it does not average out.
+std::vector<float> standard_errors(const std::vector<PlacedValue>& values, const Sums& sums, const Colors& fitted) {
+  const Eigen::VectorXd scatter = scatter_around(values, sums, fitted);
+  const Eigen::VectorXd light = fitted.rowwise().squaredNorm() / 3;
+  std::vector<double> relative;
+  for (Index i = 0; i < light.size(); ++i) {
+    if (sums.weight[i] > 0 && light[i] > 0) relative.push_back(scatter[i] / light[i]);
+  }
+  const double noise = median(std::move(relative));
   std::vector<float> errors(std::size_t(sums.weight.size()), 0);
   for (Index i = 0; i < sums.weight.size(); ++i) {
     if (!(sums.weight[i] > 0)) continue;
-    const double count = sums.weight[i] * sums.weight[i] / sums.weight_squared[i];
-    const double own = squares[i] / sums.weight[i], prior = common * fitted.row(i).squaredNorm() / 3;
-    const double variance = (count * own + kPriorCount * prior) / (count + kPriorCount);
-    errors[std::size_t(i)] = float(std::sqrt(kFitVariance * variance / std::max(count, 1.0)));
+    const double count = std::max(1.0, sums.weight[i] * sums.weight[i] / sums.weight_squared[i]);
+    const double of_noise = noise * light[i], not_shown = std::max(0.0, scatter[i] - kMuchScatter * of_noise);
+    errors[std::size_t(i)] = float(std::sqrt(kFitVariance * of_noise / count + not_shown));
   }
   return errors;
 }
