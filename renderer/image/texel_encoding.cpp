@@ -28,8 +28,7 @@ std::vector<std::uint8_t> make_encode_table() {
   std::vector<std::uint8_t> table(kEncodeSteps + 1);
   for (int i = 0; i <= kEncodeSteps; ++i) {
     const double v = double(i) / kEncodeSteps;
-    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    table[i] = std::uint8_t(std::lround(255 * encoded));
+    table[i] = std::uint8_t(std::lround(255 * srgb_from_linear(v)));
   }
   return table;
 }
