@@ -13,8 +13,7 @@ namespace {
 std::array<int, 3> color_channels(const Image& image, const std::string& file) {
   const std::array<int, 3> rgb{image.find_channel("R"), image.find_channel("G"), image.find_channel("B")};
   if (min_component({float(rgb[0]), float(rgb[1]), float(rgb[2])}) >= 0) return rgb;
-  const bool grey = image.channel_count() == 1 || (image.channel_count() == 2 && image.find_channel("A") == 1);
-  if (grey) return {0, 0, 0};
+  if (is_grey(image)) return {0, 0, 0};
   throw Error({file, "channels", fmt::format("are {}", fmt::join(image.channel_names, ", ")).substr(0, 200),
                "R, G and B, or a single one"});
 }
@@ -47,6 +46,15 @@ Vec3f multiply(const Rec709FromSpace& m, Vec3f color) {
   return product;
 }
 
+bool is_identity(const Rec709FromSpace& m) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (std::abs(m[i][j] - (i == j ? 1 : 0)) > 1e-3) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<Vec3f> scene_linear_rec709(const ImageFile& file, const std::string& name) {
@@ -63,6 +71,24 @@ std::vector<Vec3f> scene_linear_rec709(const ImageFile& file, const std::string&
     if (converted) colors[i] = multiply(matrix, colors[i]);
   }
   return colors;
+}
+
+Image stored_colors(const Image& image, const std::string& file) {
+  const std::array<int, 3> channels = color_channels(image, file);
+  Image colors = make_image(image.width, image.height, {"R", "G", "B"});
+  const std::size_t stride = image.channel_names.size();
+  for (std::size_t i = 0; i < colors.pixels.size(); ++i) {
+    colors.pixels[i] = image.pixels[i / 3 * stride + std::size_t(channels[i % 3])];
+  }
+  return colors;
+}
+
+bool is_grey(const Image& image) {
+  return image.channel_count() == 1 || (image.channel_count() == 2 && image.find_channel("A") == 1);
+}
+
+bool has_other_primaries(const ImageFile& image, const std::string& file) {
+  return !is_identity(rec709_from_file(image, file));
 }
 
 }  // namespace chiaro::renderer

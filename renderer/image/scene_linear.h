@@ -14,4 +14,13 @@ namespace chiaro::renderer {
 // are no such channels or no such primaries.
 std::vector<Vec3f> scene_linear_rec709(const ImageFile& image, const std::string& file);
 
+// The same channels as they are stored, as an image of R, G, B.
+Image stored_colors(const Image& image, const std::string& file);
+
+// One channel for R, G and B: grey, or grey with alpha.
+bool is_grey(const Image& image);
+
+// Whether the attribute `chromaticities` names other primaries than Rec.709's.
+bool has_other_primaries(const ImageFile& image, const std::string& file);
+
 }  // namespace chiaro::renderer

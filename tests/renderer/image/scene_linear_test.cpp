@@ -1,0 +1,37 @@
+#include "renderer/image/scene_linear.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/error.h"
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr std::array<float, 8> kRec709{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+constexpr std::array<float, 8> kRec2020{0.708F, 0.292F, 0.170F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.3290F};
+
+ImageFile file_of(Image image, Attributes attributes = {}) { return {std::move(image), std::move(attributes), false}; }
+
+TEST(SceneLinear, OtherPrimariesAreKnownAndConverted) {
+  const Image green{1, 1, {"R", "G", "B"}, {0, 1, 0}};
+  EXPECT_FALSE(has_other_primaries(file_of(green), "x.exr"));
+  EXPECT_FALSE(has_other_primaries(file_of(green, {{"chromaticities", kRec709}}), "x.exr"));
+  const ImageFile wide = file_of(green, {{"chromaticities", kRec2020}});
+  EXPECT_TRUE(has_other_primaries(wide, "x.exr"));
+  // ITU-R BT.2087, the inverse of its matrix M2.
+  const Vec3f found = scene_linear_rec709(wide, "x.exr").front();
+  EXPECT_NEAR(found.x, -0.5876F, 1e-3F);
+  EXPECT_NEAR(found.y, 1.1329F, 1e-3F);
+  EXPECT_NEAR(found.z, -0.1006F, 1e-3F);
+}
+
+TEST(SceneLinear, StoredColorsAreRedGreenAndBlue) {
+  const Image found = stored_colors({1, 1, {"A", "B", "G", "R"}, {9, 3, 2, 1}}, "x.exr");
+  EXPECT_EQ(found.channel_names, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(found.pixels, (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(stored_colors({1, 1, {"Y", "A"}, {4, 1}}, "x.png").pixels, (std::vector<float>{4, 4, 4}));
+  EXPECT_THROW(stored_colors({1, 1, {"X", "Z"}, {4, 1}}, "x.exr"), Error);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
