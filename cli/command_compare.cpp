@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -8,8 +9,8 @@
 #include "cli/add_options.h"
 #include "cli/commands.h"
 #include "cli/comparison_summary.h"
-#include "cli/difference_picture.h"
 #include "cli/error_context.h"
+#include "cli/frame_comparison.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/session.h"
@@ -19,61 +20,95 @@
 namespace chiaro::cli {
 namespace {
 
+constexpr NumberRange kPixelsPerDegreeRange{.min = 1, .max = 1000};
+
 struct CompareCommand {
   CommonOptions common;
   std::string a, b, output;
-  std::optional<double> fail_above;
-  ViewChoice view;
+  std::optional<double> fail_above, fail_above_flip;
+  bool resize = false;
+  FrameComparisonOptions frames;
 };
 
 bool is_target(const std::string& file) { return has_extension(file, {".glb", ".gltf"}); }
 
-// Written as an inequality that no NaN satisfies.
-int verdict(const CompareCommand& options, double relative_l2, std::size_t not_finite) {
-  if (!options.fail_above || (relative_l2 <= *options.fail_above && not_finite == 0)) return kDone;
-  const std::string reason = not_finite > 0 ? fmt::format("{} pixels are not finite", not_finite)
-                                            : fmt::format("relative_l2 is {:.6g}", relative_l2);
-  std::fprintf(stderr, "chiaro: limit exceeded: %s: %s (at most %g)\n", options.a.c_str(), reason.c_str(),
-               *options.fail_above);
+int limit_exceeded(const std::string& what, const std::string& reason, double limit) {
+  std::fprintf(stderr, "chiaro: limit exceeded: %s: %s (at most %g)\n", what.c_str(), reason.c_str(), limit);
   return kLimitExceeded;
 }
 
-int compare_two_targets(const CompareCommand& options, Session& session) {
+// Written as inequalities that no NaN satisfies.
+int verdict(const CompareCommand& options, const std::string& what, const FrameFigures& found) {
+  const auto& [image, flip, flip_hdr] = found;
+  if (image.not_finite > 0 && (options.fail_above || options.fail_above_flip)) {
+    return limit_exceeded(what, fmt::format("{} pixels are not finite", image.not_finite), 0);
+  }
+  if (options.fail_above && !(image.relative_l2 <= *options.fail_above)) {
+    return limit_exceeded(what, fmt::format("relative_l2 is {:.6g}", image.relative_l2), *options.fail_above);
+  }
+  if (options.fail_above_flip && !(flip <= *options.fail_above_flip)) {
+    return limit_exceeded(what, fmt::format("flip is {:.6g}", flip.value_or(1)), *options.fail_above_flip);
+  }
+  return kDone;
+}
+
+// The regions', where there are any.
+int verdict(const CompareCommand& options, const FrameComparison& comparison) {
+  if (comparison.regions.empty()) return verdict(options, options.a, comparison.whole);
+  int worst = kDone;
+  for (std::size_t i = 0; i < comparison.regions.size(); ++i) {
+    const std::string what = fmt::format("{}: {}", options.a, comparison.regions[i].name);
+    worst = std::max(worst, verdict(options, what, comparison.of_regions[i]));
+  }
+  return worst;
+}
+
+void refuse_options_of_frames(const CompareCommand& options) {
+  const auto refuse = [](const char* option) {
+    throw UsageError(fmt::format("{}: two targets have no pixels (expected two frames)", option));
+  };
   if (!options.output.empty()) throw UsageError("--output: two targets have no picture (expected two frames)");
+  if (!options.frames.regions.empty()) refuse("--crop");
+  if (options.fail_above_flip) refuse("--fail-above-flip");
+  if (options.resize) refuse("--resize");
+}
+
+int compare_two_targets(const CompareCommand& options, Session& session) {
+  refuse_options_of_frames(options);
   const inverse::Target a = inverse::load_target(options.a);
   const inverse::Target b = inverse::load_target(options.b);
   session.stop_if_interrupted();
   const inverse::TargetComparison comparison = naming_file(options.a, [&] { return inverse::compare_targets(a, b); });
   const renderer::Vec3f place = b.receivers.positions[comparison.max_at];
   session.finish(comparison_summary(comparison, place), comparison_text(comparison, place));
-  return verdict(options, comparison.relative_l2, 0);
+  if (!options.fail_above || comparison.relative_l2 <= *options.fail_above) return kDone;
+  return limit_exceeded(options.a, fmt::format("relative_l2 is {:.6g}", comparison.relative_l2), *options.fail_above);
 }
 
 int compare_two_frames(const CompareCommand& options, Session& session) {
   if (!options.output.empty()) {
     require_writable(options.output);
-    require_view(options.view);
+    require_view(options.frames.view);
   }
-  const renderer::Image a = renderer::load_image(options.a).image;
-  const renderer::Image b = renderer::load_image(options.b).image;
+  const ComparedFrames frames = load_compared_frames(options.a, options.b, options.frames.view, options.resize);
   session.stop_if_interrupted();
-  const bool linear = is_scene_linear(options.a);
-  if (linear != is_scene_linear(options.b)) {
-    session.warn(fmt::format("{} and {}: one is scene-linear, the other is not", options.a, options.b));
+  const FrameComparison comparison =
+      naming_file(options.a, [&] { return compare_frames(frames, options.frames, session.control()); });
+  session.warn(frames.notes);
+  if (const std::size_t bad = comparison.whole.image.not_finite; bad > 0) {
+    session.warn(fmt::format("{} pixels are not finite and left out", bad));
   }
-  const renderer::ImageComparison comparison = naming_file(options.a, [&] { return renderer::compare_images(a, b); });
-  if (comparison.not_finite > 0)
-    session.warn(fmt::format("{} pixels are not finite and left out", comparison.not_finite));
   if (!options.output.empty()) {
-    const renderer::Image picture =
-        linear ? scene_linear_picture(a, b, options.view) : renderer::comparison_picture(a, b);
-    renderer::save_image(picture, options.output, renderer::PixelType::kUint8);
+    renderer::save_image(renderer::comparison_picture(comparison.panels), options.output, renderer::PixelType::kUint8);
   }
   session.finish(comparison_summary(comparison), comparison_text(comparison));
-  return verdict(options, comparison.relative_l2, comparison.not_finite);
+  return verdict(options, comparison);
 }
 
 int run_compare(const CompareCommand& options) {
+  if (options.frames.no_flip && options.fail_above_flip) {
+    throw UsageError("--fail-above-flip: --no-flip leaves it out (expected one of them)");
+  }
   Session session(options.common);
   if (is_target(options.a) != is_target(options.b)) {
     const std::string& target = is_target(options.a) ? options.a : options.b;
@@ -90,15 +125,26 @@ CommandRun add_compare(CLI::App& command) {
   const auto options = std::make_shared<CompareCommand>();
   add_input(command, {"a", "A", "Frame or target"}, options->a);
   add_input(command, {"b", "B", "The reference"}, options->b);
-  add_output(command, {"-o,--output", "DIFF.png", "A, B and 8 times their difference, as the view shows them"},
+  add_output(command, {"-o,--output", "DIFF.png", "A, B, 8 times their difference and FLIP, as the view shows them"},
              options->output, {".png"})
       ->required(false);
   add_number(command, {"--fail-above", "E", "Exit with 3 where relative_l2 exceeds E, or a pixel is not finite"},
              options->fail_above, kNotNegative);
-  add_view_options(command, options->view);
+  add_number(command, {"--fail-above-flip", "E", "The same of FLIP"}, options->fail_above_flip, kZeroToOne);
+  add_repeated(
+      command,
+      {"--crop", "[NAME=]x0,y0,x1,y1",
+       "Figures of these pixels too, up to before x1 and y1; limits then hold there; may be repeated"},
+      [options = options.get()](const std::string& text) { options->frames.regions.push_back(parse_region(text)); });
+  add_flag(command, "--resize", options->resize, "Resize A to the size of B where they differ");
+  add_number(command, {"--pixels-per-degree", "P", "Of the viewer's field, for FLIP (default 67.02)"},
+             options->frames.pixels_per_degree, kPixelsPerDegreeRange);
+  add_flag(command, "--no-flip", options->frames.no_flip, "Leave out FLIP, which takes the time for large frames");
+  add_view_options(command, options->frames.view);
   add_common_options(command, options->common);
   set_examples(command,
                "  chiaro compare frame.exr reference.exr -o difference.png --fail-above 0.02\n"
+               "  chiaro compare frame.exr reference.exr --crop face=200,80,320,240 --fail-above-flip 0.05\n"
                "  chiaro compare found.glb painted.glb --json");
   return [options] { return run_compare(*options); };
 }

@@ -16,6 +16,8 @@ struct Figures {
   double max_difference;
 };
 
+using Row = std::vector<std::string>;
+
 Vec3f vector_of(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
 Figures figures_of(const renderer::ImageComparison& c) {
@@ -37,26 +39,98 @@ JsonObject summary_of(const Figures& f, JsonList max_at) {
           {"max_at", std::move(max_at)}};
 }
 
-std::string text_of(const Figures& f, const std::string& place) {
-  return aligned_rows({{"relative L2", text_of_percent(f.relative_l2)},
-                       {"RMSE", fmt::format("{:.4g}", f.rmse)},
-                       {"relative MSE", fmt::format("{:.4g}", f.relative_mse)},
-                       {"PSNR", fmt::format("{:.4g} dB", f.psnr)},
-                       {"mean of A", text_of_vector(f.mean_a)},
-                       {"mean of B", text_of_vector(f.mean_b)},
-                       {"largest difference", fmt::format("{:.4g} at {}", f.max_difference, place)}});
+std::vector<TextRow> rows_of(const Figures& f, const std::string& place) {
+  return {{"relative L2", text_of_percent(f.relative_l2)},
+          {"RMSE", fmt::format("{:.4g}", f.rmse)},
+          {"relative MSE", fmt::format("{:.4g}", f.relative_mse)},
+          {"PSNR", fmt::format("{:.4g} dB", f.psnr)},
+          {"mean of A", text_of_vector(f.mean_a)},
+          {"mean of B", text_of_vector(f.mean_b)},
+          {"largest difference", fmt::format("{:.4g} at {}", f.max_difference, place)}};
+}
+
+JsonObject channels_of(const renderer::ImageComparison& c) {
+  JsonObject channels;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const renderer::ChannelComparison& f = c.channels[i];
+    channels.emplace_back(std::string(1, "RGB"[i]), JsonObject{{"relative_l2", f.relative_l2},
+                                                               {"rmse", f.rmse},
+                                                               {"relative_mse", f.relative_mse},
+                                                               {"psnr", f.psnr},
+                                                               {"mean_a", f.mean_a},
+                                                               {"mean_b", f.mean_b},
+                                                               {"max_difference", f.max_difference}});
+  }
+  return channels;
+}
+
+JsonObject summary_of(const FrameFigures& f) {
+  JsonObject summary = summary_of(figures_of(f.image), {f.image.max_x, f.image.max_y});
+  summary.emplace_back("not_finite", std::int64_t(f.image.not_finite));
+  summary.emplace_back("channels", channels_of(f.image));
+  if (f.flip) summary.emplace_back("flip", *f.flip);
+  if (f.flip_hdr) summary.emplace_back("flip_hdr", *f.flip_hdr);
+  return summary;
+}
+
+JsonObject summary_of(const NamedRegion& region, const FrameFigures& figures) {
+  const renderer::PixelRegion& r = region.pixels;
+  JsonObject summary{{"name", region.name}, {"crop", JsonList{r.x0, r.y0, r.x1, r.y1}}};
+  for (auto& figure : summary_of(figures)) summary.push_back(std::move(figure));
+  return summary;
+}
+
+std::string text_of(const std::optional<double>& flip) { return flip ? fmt::format("{:.4g}", *flip) : "-"; }
+
+std::string channel_table(const renderer::ImageComparison& c) {
+  std::vector<Row> rows{{"channel", "relative L2", "RMSE", "PSNR", "largest"}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const renderer::ChannelComparison& f = c.channels[i];
+    rows.push_back({std::string(1, "RGB"[i]), text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
+                    fmt::format("{:.4g}", f.psnr), fmt::format("{:.4g}", f.max_difference)});
+  }
+  return table(rows);
+}
+
+std::string region_table(const FrameComparison& comparison) {
+  if (comparison.regions.empty()) return "";
+  std::vector<Row> rows{{"region", "relative L2", "RMSE", "PSNR", "largest", "FLIP", "HDR-FLIP"}};
+  for (std::size_t i = 0; i < comparison.regions.size(); ++i) {
+    const FrameFigures& f = comparison.of_regions[i];
+    rows.push_back({comparison.regions[i].name, text_of_percent(f.image.relative_l2),
+                    fmt::format("{:.4g}", f.image.rmse), fmt::format("{:.4g}", f.image.psnr),
+                    fmt::format("{:.4g}", f.image.max_difference), text_of(f.flip), text_of(f.flip_hdr)});
+  }
+  return "\n" + table(rows);
 }
 
 }  // namespace
 
-JsonObject comparison_summary(const renderer::ImageComparison& comparison) {
-  JsonObject summary = summary_of(figures_of(comparison), {comparison.max_x, comparison.max_y});
-  summary.emplace_back("not_finite", comparison.not_finite);
+JsonObject comparison_summary(const FrameComparison& comparison) {
+  JsonObject summary = summary_of(comparison.whole);
+  summary.emplace_back("scene_linear", comparison.scene_linear);
+  if (comparison.scene_linear) summary.emplace_back("exposure", comparison.exposure);
+  if (const renderer::HdrFlip& hdr = comparison.hdr_flip; hdr.exposures > 0) {
+    summary.emplace_back("flip_hdr_exposures",
+                         JsonObject{{"start", hdr.start}, {"stop", hdr.stop}, {"count", hdr.exposures}});
+  }
+  JsonList regions;
+  for (std::size_t i = 0; i < comparison.regions.size(); ++i) {
+    regions.emplace_back(summary_of(comparison.regions[i], comparison.of_regions[i]));
+  }
+  if (!regions.empty()) summary.emplace_back("regions", std::move(regions));
   return summary;
 }
 
-std::string comparison_text(const renderer::ImageComparison& comparison) {
-  return text_of(figures_of(comparison), fmt::format("pixel {}, {}", comparison.max_x, comparison.max_y));
+std::string comparison_text(const FrameComparison& comparison) {
+  const renderer::ImageComparison& image = comparison.whole.image;
+  std::vector<TextRow> rows = rows_of(figures_of(image), fmt::format("pixel {}, {}", image.max_x, image.max_y));
+  if (comparison.whole.flip) rows.emplace_back("FLIP", text_of(comparison.whole.flip));
+  if (const renderer::HdrFlip& hdr = comparison.hdr_flip; hdr.exposures > 0) {
+    rows.emplace_back("HDR-FLIP", fmt::format("{} over {} exposures, {:.3g} to {:.3g} EV",
+                                              text_of(comparison.whole.flip_hdr), hdr.exposures, hdr.start, hdr.stop));
+  }
+  return aligned_rows(rows) + "\n" + channel_table(image) + region_table(comparison);
 }
 
 JsonObject comparison_summary(const inverse::TargetComparison& comparison, Vec3f place) {
@@ -66,7 +140,7 @@ JsonObject comparison_summary(const inverse::TargetComparison& comparison, Vec3f
 }
 
 std::string comparison_text(const inverse::TargetComparison& comparison, Vec3f place) {
-  return text_of(figures_of(comparison), text_of_vector(place) + " m");
+  return aligned_rows(rows_of(figures_of(comparison), text_of_vector(place) + " m"));
 }
 
 }  // namespace chiaro::cli

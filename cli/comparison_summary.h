@@ -3,14 +3,14 @@
 
 #include <string>
 
+#include "cli/frame_comparison.h"
 #include "cli/json_output.h"
 #include "inverse/target/compare_targets.h"
-#include "renderer/image/compare_images.h"
 
 namespace chiaro::cli {
 
-JsonObject comparison_summary(const renderer::ImageComparison& comparison);
-std::string comparison_text(const renderer::ImageComparison& comparison);
+JsonObject comparison_summary(const FrameComparison& comparison);
+std::string comparison_text(const FrameComparison& comparison);
 
 // `place`: where the receiver of the largest difference lies, metres.
 JsonObject comparison_summary(const inverse::TargetComparison& comparison, renderer::Vec3f place);

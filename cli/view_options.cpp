@@ -22,6 +22,7 @@ void add_view_options(CLI::App& command, ViewChoice& choice) {
              [&choice](const std::string& text) { choice.config = text; });
   add_text(command, {"--display", "NAME", "Display of the config (default: its first)"}, choice.view.display);
   add_text(command, {"--view", "NAME", "View of the display (default: its first)"}, choice.view.view);
+  add_text(command, {"--look", "NAME", "Look in place of the view's own, or none"}, choice.view.look);
   add_parsed(command, {"--exposure", "EV|auto", "Exposure of display pictures (default 0)"},
              [&choice](const std::string& text) { parse_exposure(text, choice); });
 }
@@ -29,9 +30,14 @@ void add_view_options(CLI::App& command, ViewChoice& choice) {
 void require_view(const ViewChoice& choice) { displayed(renderer::make_image(1, 1, {"R", "G", "B"}), choice); }
 
 renderer::Image displayed(const renderer::Image& image, const ViewChoice& choice) {
-  renderer::ViewOptions view = choice.view;
-  if (choice.auto_exposure) view.exposure = auto_exposure(image);
-  return renderer::apply_display_view(image, renderer::find_ocio_config(choice.config), view);
+  return renderer::apply_display_view(image, renderer::find_ocio_config(choice.config),
+                                      exposed_for(image, choice).view);
+}
+
+ViewChoice exposed_for(const renderer::Image& image, ViewChoice choice) {
+  if (choice.auto_exposure) choice.view.exposure = auto_exposure(image);
+  choice.auto_exposure = false;
+  return choice;
 }
 
 float auto_exposure(const renderer::Image& image) {

@@ -14,7 +14,7 @@ class App;
 
 namespace chiaro::cli {
 
-// --ocio, --display, --view, --exposure.
+// --ocio, --display, --view, --look, --exposure.
 struct ViewChoice {
   std::optional<std::filesystem::path> config;
   renderer::ViewOptions view;
@@ -28,6 +28,9 @@ void require_view(const ViewChoice& choice);
 
 // The image (scene-linear Rec.709) as the view shows it.
 renderer::Image displayed(const renderer::Image& image, const ViewChoice& choice);
+
+// The choice with an automatic exposure made that of `image`.
+ViewChoice exposed_for(const renderer::Image& image, ViewChoice choice);
 
 // The EV that brings the log-average luminance of the pixels that are neither black nor infinite to 0.18; 0 where there
 // are none.

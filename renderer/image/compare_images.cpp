@@ -11,8 +11,6 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr float kDifferenceGain = 8;
-
 using ColorChannels = std::array<int, 3>;
 
 ColorChannels color_channels(const Image& image) {
@@ -42,6 +40,7 @@ bool all_finite(const Color& color) {
 
 struct PixelSums {
   DifferenceSums differences;
+  std::array<DifferenceSums, 3> channels;
   ImageComparison result;  // means are sums until all pixels are in
 
   void add(const Color& a, const Color& b, int x, int y) {
@@ -54,59 +53,69 @@ struct PixelSums {
         result.max_x = x;
         result.max_y = y;
       }
+      channels[c].add(a[c], b[c]);
       result.mean_a[c] += a[c];
       result.mean_b[c] += b[c];
     }
   }
 
-  ImageComparison finish() {
+  ImageComparison finish(const std::optional<double>& peak) {
     if (differences.weight == 0) throw Error({"", "", "no pixel is finite in both pictures", "pictures without NaN"});
     for (int c = 0; c < 3; ++c) {
       result.mean_a[c] /= differences.weight / 3;
       result.mean_b[c] /= differences.weight / 3;
+      fill(channels[c], peak, result.channels[c]);
+      result.channels[c].mean_a = result.mean_a[c];
+      result.channels[c].mean_b = result.mean_b[c];
     }
-    result.relative_l2 = differences.relative_l2();
-    result.rmse = differences.rmse();
-    result.relative_mse = differences.relative_mse();
-    result.psnr = differences.psnr();
-    result.max_difference = differences.max_difference;
+    fill(differences, peak, result);
     return result;
+  }
+
+  template <class Figures>
+  static void fill(const DifferenceSums& sums, const std::optional<double>& peak, Figures& figures) {
+    figures.relative_l2 = sums.relative_l2();
+    figures.rmse = sums.rmse();
+    figures.relative_mse = sums.relative_mse();
+    figures.psnr = sums.psnr(peak.value_or(sums.peak));
+    figures.max_difference = sums.max_difference;
   }
 };
 
-// A difference that is no number shows as white rather than as nothing.
-float shown_difference(float a, float b) {
-  const float difference = kDifferenceGain * std::abs(a - b);
-  return difference < 1 ? difference : 1;
+PixelRegion region_of(const Image& image, const std::optional<PixelRegion>& region) {
+  if (!region) return {0, 0, image.width, image.height};
+  const PixelRegion& r = *region;
+  if (0 <= r.x0 && r.x0 < r.x1 && r.x1 <= image.width && 0 <= r.y0 && r.y0 < r.y1 && r.y1 <= image.height) return r;
+  throw Error({"", "", fmt::format("region {},{},{},{} is not in the picture", r.x0, r.y0, r.x1, r.y1),
+               fmt::format("x0 < x1 up to {}, y0 < y1 up to {}", image.width, image.height)});
 }
 
 }  // namespace
 
-ImageComparison compare_images(const Image& a, const Image& b) {
+ImageComparison compare_images(const Image& a, const Image& b, const CompareOptions& options) {
   check_sizes(a, b);
   const ColorChannels channels_a = color_channels(a), channels_b = color_channels(b);
+  const PixelRegion region = region_of(a, options.region);
   PixelSums sums;
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) sums.add(color_at(a, channels_a, x, y), color_at(b, channels_b, x, y), x, y);
-  }
-  return sums.finish();
-}
-
-Image comparison_picture(const Image& a, const Image& b) {
-  check_sizes(a, b);
-  const ColorChannels channels_a = color_channels(a), channels_b = color_channels(b);
-  Image picture = make_image(3 * a.width, a.height, {"R", "G", "B"});
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) {
-      const Color color_a = color_at(a, channels_a, x, y), color_b = color_at(b, channels_b, x, y);
-      for (int c = 0; c < 3; ++c) {
-        picture.at(x, y)[c] = color_a[c];
-        picture.at(a.width + x, y)[c] = color_b[c];
-        picture.at(2 * a.width + x, y)[c] = shown_difference(color_a[c], color_b[c]);
-      }
+  for (int y = region.y0; y < region.y1; ++y) {
+    for (int x = region.x0; x < region.x1; ++x) {
+      sums.add(color_at(a, channels_a, x, y), color_at(b, channels_b, x, y), x, y);
     }
   }
-  return picture;
+  return sums.finish(options.peak);
+}
+
+double mean_value(const Image& values, const std::optional<PixelRegion>& region) {
+  const PixelRegion r = region_of(values, region);
+  double sum = 0, count = 0;
+  for (int y = r.y0; y < r.y1; ++y) {
+    for (int x = r.x0; x < r.x1; ++x) {
+      if (!std::isfinite(*values.at(x, y))) continue;
+      sum += *values.at(x, y);
+      ++count;
+    }
+  }
+  return sum / count;
 }
 
 }  // namespace chiaro::renderer

@@ -32,8 +32,9 @@ struct DifferenceSums {
   double relative_l2() const { return squared > 0 ? std::sqrt(squared / reference) : 0; }
   double rmse() const { return std::sqrt(squared / weight); }
   double relative_mse() const { return relative_squared / weight; }
-  double psnr() const {  // dB
-    return squared > 0 ? 20 * std::log10(peak / rmse()) : std::numeric_limits<double>::infinity();
+  double psnr() const { return psnr(peak); }  // dB
+  double psnr(double of_peak) const {
+    return squared > 0 ? 20 * std::log10(of_peak / rmse()) : std::numeric_limits<double>::infinity();
   }
 };
 

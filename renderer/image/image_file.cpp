@@ -100,8 +100,9 @@ ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& 
   ImageFile file;
   file.image = Image{spec.width, spec.height, spec.channelnames, {}};
   const bool exr = std::strcmp(input.format_name(), "openexr") == 0;
-  file.srgb_curve = !spec.format.is_floating_point() &&
-                    !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
+  file.whole_numbers = !spec.format.is_floating_point();
+  file.srgb_curve =
+      file.whole_numbers && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
   for (const OIIO::ParamValue& value : spec.extra_attribs) append_attribute(file.attributes, value, exr);
   return file;
 }

@@ -23,7 +23,8 @@ using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
 
 struct ImageFile {
   Image image;
-  Attributes attributes;    // those of the kinds above
+  Attributes attributes;       // those of the kinds above
+  bool whole_numbers = false;  // pixels are stored as whole numbers, as in display pictures
   bool srgb_curve = false;  // values are on the sRGB curve, as whole-number pixels are where the file says nothing else
 };
 

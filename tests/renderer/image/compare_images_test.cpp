@@ -83,7 +83,6 @@ TEST(CompareImages, ASingleChannelCountsAsGrey) {
 TEST(CompareImages, PicturesThatCannotBeComparedAreErrors) {
   const Image image = make_rgb(2, 1, {1, 2, 3, 4, 5, 6});
   EXPECT_THROW(compare_images(image, make_rgb(1, 2, {1, 2, 3, 4, 5, 6})), Error);
-  EXPECT_THROW(comparison_picture(image, make_rgb(1, 1, {1, 2, 3})), Error);
   EXPECT_THROW(compare_images(make_rgb(0, 0, {}), make_rgb(0, 0, {})), Error);
   EXPECT_THROW(compare_images(image, {2, 1, {"R", "G", "Z"}, {1, 2, 3, 4, 5, 6}}), Error);
   EXPECT_THROW(compare_images({2, 1, {"X", "Y"}, {1, 2, 3, 4}}, image), Error);
@@ -91,19 +90,42 @@ TEST(CompareImages, PicturesThatCannotBeComparedAreErrors) {
   EXPECT_THROW(compare_images(nothing, nothing), Error);
 }
 
-TEST(ComparisonPicture, HoldsBothAndEightTimesTheirDifference) {
-  const Image a = make_rgb(1, 2, {0.5F, 0.25F, 0, 1, 1, 0});
-  const Image b = make_rgb(1, 2, {0.5F, 0.3125F, 1, 1, kNan, 0.0625F});
-  const Image picture = comparison_picture(a, b);
-  ASSERT_EQ(picture.width, 3);
-  ASSERT_EQ(picture.height, 2);
-  EXPECT_EQ(picture.channel_names, (std::vector<std::string>{"R", "G", "B"}));
-  const auto pixel = [&](int x, int y) { return std::vector<float>(picture.at(x, y), picture.at(x, y) + 3); };
-  EXPECT_EQ(pixel(0, 0), (std::vector<float>{0.5F, 0.25F, 0}));
-  EXPECT_EQ(pixel(1, 0), (std::vector<float>{0.5F, 0.3125F, 1}));
-  EXPECT_EQ(pixel(2, 0), (std::vector<float>{0, 0.5F, 1}));
-  EXPECT_EQ(pixel(0, 1), (std::vector<float>{1, 1, 0}));
-  EXPECT_EQ(pixel(2, 1), (std::vector<float>{0, 1, 0.5F}));
+TEST(CompareImages, EachChannelHasItsFigures) {
+  const Image b = make_rgb(2, 1, {1, 2, 3, 1, 2, 3});
+  const Image a = make_rgb(2, 1, {1, 2, 4, 1, 3, 5});
+  const ImageComparison found = compare_images(a, b);
+  EXPECT_EQ(found.channels[0].relative_l2, 0);
+  EXPECT_DOUBLE_EQ(found.channels[1].relative_l2, std::sqrt(1.0 / 8));
+  EXPECT_DOUBLE_EQ(found.channels[2].rmse, std::sqrt(5.0 / 2));
+  EXPECT_NEAR(found.channels[2].psnr, 10 * std::log10(9 / 2.5), 1e-12);
+  EXPECT_EQ(found.channels[2].max_difference, 2);
+  EXPECT_EQ(found.channels[2].mean_a, 4.5);
+  EXPECT_EQ(found.channels[1].mean_b, 2);
+}
+
+TEST(CompareImages, ARegionIsComparedAlone) {
+  const Image b = make_rgb(3, 2, std::vector<float>(18, 1));
+  Image a = b;
+  a.at(2, 1)[0] = 3;
+  EXPECT_EQ(compare_images(a, b, {.region = PixelRegion{0, 0, 2, 2}, .peak = {}}).rmse, 0);
+  const ImageComparison found = compare_images(a, b, {.region = PixelRegion{1, 1, 3, 2}, .peak = {}});
+  EXPECT_DOUBLE_EQ(found.rmse, std::sqrt(4.0 / 6));
+  EXPECT_EQ(found.max_x, 2);
+  EXPECT_EQ(found.max_y, 1);
+  for (const PixelRegion bad : {PixelRegion{0, 0, 4, 2}, PixelRegion{-1, 0, 2, 2}, PixelRegion{1, 1, 1, 2}}) {
+    EXPECT_THROW(compare_images(a, b, {.region = bad, .peak = {}}), Error);
+  }
+}
+
+TEST(CompareImages, ThePeakOfThePsnrMayBeGiven) {
+  const Image b = make_rgb(1, 1, {0.5F, 0.5F, 0.5F}), a = make_rgb(1, 1, {0.6F, 0.5F, 0.5F});
+  EXPECT_NEAR(compare_images(a, b, {.region = {}, .peak = 1}).psnr, 10 * std::log10(3 / 0.01), 1e-5);
+}
+
+TEST(MeanValue, IsOfTheFinitePixelsOfARegion) {
+  const Image values{2, 2, {"FLIP"}, {1, 2, kNan, 4}};
+  EXPECT_DOUBLE_EQ(mean_value(values), 7.0 / 3);
+  EXPECT_DOUBLE_EQ(mean_value(values, PixelRegion{0, 1, 2, 2}), 4);
 }
 
 }  // namespace

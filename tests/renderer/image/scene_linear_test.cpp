@@ -10,7 +10,12 @@ namespace {
 constexpr std::array<float, 8> kRec709{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
 constexpr std::array<float, 8> kRec2020{0.708F, 0.292F, 0.170F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.3290F};
 
-ImageFile file_of(Image image, Attributes attributes = {}) { return {std::move(image), std::move(attributes), false}; }
+ImageFile file_of(Image image, Attributes attributes = {}) {
+  ImageFile file;
+  file.image = std::move(image);
+  file.attributes = std::move(attributes);
+  return file;
+}
 
 TEST(SceneLinear, OtherPrimariesAreKnownAndConverted) {
   const Image green{1, 1, {"R", "G", "B"}, {0, 1, 0}};

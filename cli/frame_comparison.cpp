@@ -1,0 +1,84 @@
+#include "cli/frame_comparison.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "cli/option_values.h"
+#include "cli/usage_error.h"
+
+namespace chiaro::cli {
+namespace {
+
+using renderer::Image;
+
+bool finite_pixel(const Image& image, std::size_t i) {
+  const float* pixel = &image.pixels[3 * i];
+  return std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
+}
+
+// Pixels that are not finite in both frames have no FLIP.
+Image without_bad_pixels(Image flip, const ComparedFrames& frames) {
+  for (std::size_t i = 0; i < flip.pixels.size(); ++i) {
+    if (finite_pixel(frames.a, i) && finite_pixel(frames.b, i)) continue;
+    flip.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return flip;
+}
+
+FrameFigures figures_of(const ComparedFrames& frames, const FrameComparison& found,
+                        const std::optional<renderer::PixelRegion>& region) {
+  FrameFigures figures;
+  const std::optional<double> peak = frames.scene_linear ? std::optional<double>() : 1.0;
+  figures.image = renderer::compare_images(frames.a, frames.b, {.region = region, .peak = peak});
+  if (found.panels.flip) figures.flip = renderer::mean_value(*found.panels.flip, region);
+  if (found.hdr_flip.exposures > 0) figures.flip_hdr = renderer::mean_value(found.hdr_flip.error, region);
+  return figures;
+}
+
+renderer::ComparisonPanels panels_of(const ComparedFrames& frames, const ViewChoice& view) {
+  const Image difference = renderer::magnified_difference(frames.a, frames.b);
+  if (!frames.scene_linear) return {frames.a, frames.b, difference, {}};
+  return {displayed(frames.a, view), displayed(frames.b, view), displayed(difference, view), {}};
+}
+
+void add_flip(const ComparedFrames& frames, double pixels_per_degree, const renderer::Control& control,
+              FrameComparison& found) {
+  found.panels.flip = without_bad_pixels(renderer::flip(found.panels.a, found.panels.b, pixels_per_degree), frames);
+  if (!frames.scene_linear) return;
+  found.hdr_flip = renderer::hdr_flip(frames.a, frames.b, pixels_per_degree, control);
+  found.hdr_flip.error = without_bad_pixels(std::move(found.hdr_flip.error), frames);
+}
+
+}  // namespace
+
+NamedRegion parse_region(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const bool named = equals != std::string::npos && equals > 0;
+  const std::vector<double> v =
+      parse_numbers(named ? std::string_view(text).substr(equals + 1) : text, 4, {.min = 0, .max = 1 << 24});
+  const bool whole = std::all_of(v.begin(), v.end(), [](double corner) { return corner == std::floor(corner); });
+  if (!whole || v[0] >= v[2] || v[1] >= v[3]) {
+    throw UsageError(fmt::format("'{}' (expected whole numbers, x0 < x1 and y0 < y1)", text));
+  }
+  return {named ? text.substr(0, equals) : text, {int(v[0]), int(v[1]), int(v[2]), int(v[3])}};
+}
+
+FrameComparison compare_frames(const ComparedFrames& frames, const FrameComparisonOptions& options,
+                               const renderer::Control& control) {
+  FrameComparison found;
+  found.scene_linear = frames.scene_linear;
+  const ViewChoice view = frames.scene_linear ? exposed_for(frames.b, options.view) : options.view;
+  found.exposure = view.view.exposure;
+  found.panels = panels_of(frames, view);
+  if (!options.no_flip) add_flip(frames, options.pixels_per_degree, control, found);
+  found.whole = figures_of(frames, found, {});
+  found.regions = options.regions;
+  for (const NamedRegion& region : options.regions) {
+    found.of_regions.push_back(figures_of(frames, found, region.pixels));
+  }
+  return found;
+}
+
+}  // namespace chiaro::cli
