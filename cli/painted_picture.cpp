@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "cli/difference_picture.h"
 #include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
 #include "renderer/image/scene_linear.h"
@@ -125,7 +124,7 @@ PaintedPicture load_painted_picture(const std::string& file, const PictureEncodi
   if (!encoding.space.empty()) {
     decode_space(image, encoding, picture);
     undo_exposure(encoding.view.view.exposure, picture);
-  } else if (is_scene_linear(file)) {
+  } else if (!stored.whole_numbers) {
     picture.pixels = renderer::scene_linear_rec709(stored, file);
     picture.white = {1, 1, 1};
     picture.encoding = "scene-linear";

@@ -25,7 +25,7 @@ struct PaintedPicture {
   std::size_t white_pixels = 0;         // of display-referred pictures: at white in a channel
 };
 
-// EXR, HDR and PFM hold scene-linear values; others show them through the encoding's display and view, unless a space
+// Files of floats hold scene-linear values, of whole numbers what the encoding's display and view show, unless a space
 // is named. The exposure is undone. White pixels of a display-referred picture tell only that at least so much is
 // wanted: their weight is 0 unless kept. Error where the file has no colours.
 PaintedPicture load_painted_picture(const std::string& file, const PictureEncoding& encoding);

@@ -50,8 +50,8 @@ void add_picture_options(CLI::App& command, TargetChoices& choices) {
              [&choices](const std::string& text) { choices.content = parse_content(text); });
   add_text(command,
            {"--image-space", "NAME",
-            "Colour space of the pictures, of the OpenColorIO config (default: EXR, HDR and PFM are scene-linear, "
-            "others show it through --display and --view)"},
+            "Colour space of the pictures, of the OpenColorIO config (default: EXR, HDR and other floats are "
+            "scene-linear, whole numbers what --display and --view show)"},
            choices.encoding.space);
   add_flag(command, "--keep-white", choices.encoding.keep_white,
            "White pixels of PNG, TIFF and JPEG pictures mean that white; else they may be brighter, and are left out");
