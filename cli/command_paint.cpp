@@ -65,6 +65,12 @@ inverse::PaintResult apply_strokes(const PaintCommand& options, const inverse::T
 }
 
 void warn_of_misses(const PaintCommand& options, const inverse::PaintResult& result, Session& session) {
+  for (std::size_t i = 0; i < result.far_points.size(); ++i) {
+    for (const std::size_t point : result.far_points[i]) {
+      session.warn(fmt::format("{}: strokes[{}].path[{}]: is farther from any surface than the stroke's radius",
+                               options.strokes, i, point));
+    }
+  }
   for (std::size_t i = 0; i < result.touched.size(); ++i) {
     if (result.touched[i] > 0) continue;
     session.warn(fmt::format("{}: strokes[{}]: touches no receiver", options.strokes, i));

@@ -1,67 +1,49 @@
 #include "inverse/target/brush_footprint.h"
 
 #include <algorithm>
-#include <array>
-#include <limits>
 
-#include "inverse/numerics/closest_point.h"
+#include "inverse/target/distance_to_path.h"
+#include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
 using Eigen::Vector3d;
-using renderer::Box3f;
-using renderer::Triangle;
 
 constexpr float kFacingCosine = 0.2F;   // between normal and side; `facing` is 1 from here on, and 0 at a cosine of 0
 constexpr float kLeastFacing = 1e-3F;   // touched: facing > this
 constexpr double kSameDistance = 1e-4;  // on both surfaces: distances differ by ≤ this × radius
-constexpr double kFarAway = std::numeric_limits<double>::infinity();
-
-// Of double precision, so that no path of finite floats overflows.
-Vector3d wide(Vec3f v) { return {v.x, v.y, v.z}; }
-
-// Without triangles every receiver stands for itself.
-Triangle surface_triangle(const Receivers& receivers, std::uint32_t item) {
-  return receivers.triangles.empty() ? Triangle{item, item, item} : receivers.triangles[item];
-}
-
-struct SurfacePoint {
-  double distance = kFarAway;
-  Vec3f normal;
-};
-
-SurfacePoint closest_on_surface(const Receivers& receivers, std::uint32_t item, Vec3f point) {
-  const Triangle triangle = surface_triangle(receivers, item);
-  const numerics::TriangleCorners corners{wide(receivers.positions[triangle[0]]),
-                                          wide(receivers.positions[triangle[1]]),
-                                          wide(receivers.positions[triangle[2]])};
-  const Vector3d weights = numerics::closest_on_triangle(corners, wide(point));
-  Vector3d position = Vector3d::Zero();
-  Vec3f normal;
-  for (int i = 0; i < 3; ++i) {
-    position += weights[i] * corners[i];
-    normal += float(weights[i]) * receivers.normals[triangle[i]];
-  }
-  const float length = renderer::length(normal);
-  return {(position - wide(point)).norm(), length > 0 ? normal / length : Vec3f{}};
-}
 
 using Sides = std::vector<Vec3f>;
 
-// Normals of the surface that `point` lies on: of all triangles that are as near as the nearest.
-Sides sides_at(const Receivers& receivers, const BoxTree& surface, Vec3f point, float radius) {
-  double nearest = kFarAway;
-  visit_near(surface, point, nearest, [&](std::uint32_t item) {
-    return nearest = std::min(nearest, closest_on_surface(receivers, item, point).distance);
+// Normals of the surface that a piece of the path lies on: of all triangles that its middle is as near to as to the
+// nearest.
+Sides sides_of(const ReceiverSurface& surface, const SurfacePath::Piece& piece, double radius) {
+  const Vector3d middle = 0.5 * (piece.from + piece.to);
+  double nearest = radius;
+  visit_near(surface.tree, to_vec3f(middle), nearest, [&](std::uint32_t item) {
+    return nearest = std::min(nearest, closest_on_surface(surface, item, middle).distance);
   });
   const double reach = nearest + kSameDistance * radius;
   Sides sides;
-  visit_near(surface, point, reach, [&](std::uint32_t item) {
-    const SurfacePoint found = closest_on_surface(receivers, item, point);
-    if (found.distance <= reach) sides.push_back(found.normal);
+  visit_near(surface.tree, to_vec3f(middle), reach, [&](std::uint32_t item) {
+    const SurfacePoint found = closest_on_surface(surface, item, middle);
+    if (found.distance <= reach) sides.push_back(to_vec3f(found.normal));
     return reach;
   });
+  return sides;
+}
+
+// And of the pieces before and after it, so that no line is left along the edge that a path crosses aslant.
+Sides sides_around(const ReceiverSurface& surface, const SurfacePath& path, std::size_t piece, double radius) {
+  Sides sides = sides_of(surface, path.pieces[piece], radius);
+  const auto add_joined = [&](std::size_t first, std::size_t second, std::size_t other) {
+    if ((path.pieces[first].to - path.pieces[second].from).norm() > kSameDistance * radius) return;
+    const Sides more = sides_of(surface, path.pieces[other], radius);
+    sides.insert(sides.end(), more.begin(), more.end());
+  };
+  if (piece > 0) add_joined(piece - 1, piece, piece - 1);
+  if (piece + 1 < path.pieces.size()) add_joined(piece, piece + 1, piece + 1);
   return sides;
 }
 
@@ -73,73 +55,39 @@ float facing(Vec3f normal, const Sides& sides) {
   return t * t * (3 - 2 * t);
 }
 
-struct Path {
-  const std::vector<Vec3f>& points;
-  BoxTree segments;  // segment i joins points i and i + 1; one point is a segment of no length
+Vec3f mirrored(Vec3f point, const MirrorPlane& plane) {
+  return point - 2 * dot(point - plane.point, plane.normal) * plane.normal;
+}
 
-  std::size_t end_of(std::size_t segment) const { return std::min(segment + 1, points.size() - 1); }
-};
-
-Path make_path(const std::vector<Vec3f>& points) {
-  Path path{points, {}};
-  std::vector<Box3f> boxes(std::max<std::size_t>(points.size(), 2) - 1);
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    boxes[i].extend(points[i]);
-    boxes[i].extend(points[path.end_of(i)]);
-  }
-  path.segments = make_box_tree(boxes);
+SurfacePath lay_with_mirror_image(const ReceiverSurface& surface, const Stroke& stroke) {
+  SurfacePath path = lay_on_surface(surface, stroke.path, stroke.radius);
+  if (!stroke.mirror) return path;
+  std::vector<Vec3f> image;
+  for (const Vec3f point : stroke.path) image.push_back(mirrored(point, *stroke.mirror));
+  const SurfacePath other = lay_on_surface(surface, image, stroke.radius);
+  path.pieces.insert(path.pieces.end(), other.pieces.begin(), other.pieces.end());
   return path;
 }
 
-struct PathPoint {
-  double distance = kFarAway;
-  std::size_t segment = 0;
-  bool nearer_end = false;  // to the segment's end than to its start
-};
-
-// The point of the path closest to `point`, of the first segment where several are as close; far away: not within
-// reach.
-PathPoint closest_on_path(const Path& path, Vec3f point, double reach) {
-  PathPoint closest;
-  visit_near(path.segments, point, reach, [&](std::uint32_t segment) {
-    const Vector3d a = wide(path.points[segment]), b = wide(path.points[path.end_of(segment)]);
-    const double t = numerics::closest_on_segment(a, b, wide(point));
-    const double distance = (a + t * (b - a) - wide(point)).norm();
-    if (distance < closest.distance || (distance == closest.distance && segment < closest.segment)) {
-      closest = {distance, segment, t > 0.5};
-    }
-    return std::min(reach, closest.distance);
-  });
-  return closest;
+std::vector<PathDistance> distances(const ReceiverSurface& surface, const SurfacePath& path, const Stroke& stroke) {
+  const bool along_surface = stroke.distance == BrushDistance::kSurface && !surface.receivers.triangles.empty();
+  return along_surface ? distances_along_surface(surface, path, stroke.radius)
+                       : distances_through_space(surface, path, stroke.radius);
 }
 
 }  // namespace
 
-BoxTree make_surface_tree(const Receivers& receivers) {
-  std::vector<Box3f> boxes(receivers.triangles.empty() ? receivers.size() : receivers.triangles.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (const std::uint32_t corner : surface_triangle(receivers, std::uint32_t(i))) {
-      boxes[i].extend(receivers.positions[corner]);
-    }
+BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke) {
+  const SurfacePath path = lay_with_mirror_image(surface, stroke);
+  std::vector<Sides> sides(path.pieces.size());
+  BrushFootprint footprint{{}, path.far_points};
+  for (const PathDistance& near : distances(surface, path, stroke)) {
+    Sides& side = sides[near.piece];
+    if (stroke.facing && side.empty()) side = sides_around(surface, path, near.piece, stroke.radius);
+    const float faced = stroke.facing ? facing(surface.receivers.normals[near.receiver], side) : 1;
+    if (faced > kLeastFacing) footprint.touched.push_back({near.receiver, float(near.distance), faced});
   }
-  return make_box_tree(boxes);
-}
-
-std::vector<TouchedReceiver> brush_footprint(const Receivers& receivers, const BoxTree& surface, const Stroke& stroke) {
-  const Path path = make_path(stroke.path);
-  std::vector<Sides> sides;
-  if (stroke.facing) {
-    for (const Vec3f point : stroke.path) sides.push_back(sides_at(receivers, surface, point, stroke.radius));
-  }
-  std::vector<TouchedReceiver> touched;
-  for (std::size_t i = 0; i < receivers.size(); ++i) {
-    const PathPoint closest = closest_on_path(path, receivers.positions[i], stroke.radius);
-    if (!(closest.distance <= stroke.radius)) continue;
-    const std::size_t end = closest.nearer_end ? path.end_of(closest.segment) : closest.segment;
-    const float faced = stroke.facing ? facing(receivers.normals[i], sides[end]) : 1;
-    if (faced > kLeastFacing) touched.push_back({i, float(closest.distance), faced});
-  }
-  return touched;
+  return footprint;
 }
 
 }  // namespace chiaro::inverse

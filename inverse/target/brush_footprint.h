@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "inverse/target/paint.h"
-#include "inverse/transport/box_tree.h"
+#include "inverse/target/surface_path.h"
 
 namespace chiaro::inverse {
 
@@ -14,13 +14,15 @@ struct TouchedReceiver {
   float facing = 1;    // how much it faces the side painted from, > 0 to 1
 };
 
-// The receivers' triangles, to find the side that a stroke was painted from.
-BoxTree make_surface_tree(const Receivers& receivers);
+struct BrushFootprint {
+  std::vector<TouchedReceiver> touched;  // ascending
+  std::vector<std::size_t> far_points;   // numbers of points of the path farther than the radius from any surface
+};
 
-// Receivers within the stroke's radius of its path (the segments between its points; one point is a dab), ascending.
-// With `facing`, those only whose normal turns to the side that the nearer end of the closest segment lies on: the
-// normal of the triangle nearest to it. A triangle and not a vertex, as the vertices of a top and of its edge share
-// their places. A point on the edge between two surfaces lies on both. Where surfaces turn away, `facing` fades.
-std::vector<TouchedReceiver> brush_footprint(const Receivers& receivers, const BoxTree& surface, const Stroke& stroke);
+// Receivers within the stroke's radius of its path as it lies on the surface, or of the mirror image of it. Distance is
+// measured along the fronts of the receivers' triangles, those that their normals point from, or through space; without
+// triangles always through space. With `facing`, those only whose normal turns to the side that the nearest place of
+// the path lies on, fading where surfaces turn away. A place on the edge between two surfaces lies on both.
+BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke);
 
 }  // namespace chiaro::inverse

@@ -71,14 +71,15 @@ void check_options(const PaintOptions& options) {
 PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options) {
   check_options(options);
   CHIARO_CHECK(base.illumination.size() == base.receivers.size());
-  PaintResult result{base, {}};
+  PaintResult result{base, {}, {}};
   result.target.weight.assign(base.receivers.size(), options.unpainted_weight);
-  const BoxTree surface = make_surface_tree(base.receivers);
+  const ReceiverSurface surface = make_receiver_surface(base.receivers);
   for (const Stroke& stroke : strokes.strokes) {
     CHIARO_CHECK(stroke.radius > 0 && !stroke.path.empty());
-    const std::vector<TouchedReceiver> footprint = brush_footprint(base.receivers, surface, stroke);
-    for (const TouchedReceiver& touched : footprint) apply_to_receiver(result.target, stroke, touched);
-    result.touched.push_back(footprint.size());
+    BrushFootprint footprint = brush_footprint(surface, stroke);
+    for (const TouchedReceiver& touched : footprint.touched) apply_to_receiver(result.target, stroke, touched);
+    result.touched.push_back(footprint.touched.size());
+    result.far_points.push_back(std::move(footprint.far_points));
   }
   return result;
 }

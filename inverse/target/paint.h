@@ -2,6 +2,7 @@
 // The illumination brush.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,13 @@ namespace chiaro::inverse {
 
 enum class BrushMode : std::uint8_t { kAdd, kSet, kMultiply, kErase };
 enum class BrushFalloff : std::uint8_t { kSmooth, kHard, kGaussian };
+// How far a receiver is from the path: along the surface, or straight through space.
+enum class BrushDistance : std::uint8_t { kSurface, kSpace };
+
+struct MirrorPlane {
+  Vec3f point;   // metres
+  Vec3f normal;  // unit
+};
 
 struct Stroke {
   BrushMode mode = BrushMode::kAdd;
@@ -19,8 +27,10 @@ struct Stroke {
   BrushFalloff falloff = BrushFalloff::kSmooth;
   float opacity = 1;
   std::vector<Vec3f> path;  // metres, on the surface
-  bool facing = true;       // touch only receivers that face the side the stroke was painted from, fading
-  float weight = 1;         // given to the receivers touched, as far as they face it
+  BrushDistance distance = BrushDistance::kSurface;
+  std::optional<MirrorPlane> mirror = {};  // the path's mirror image belongs to it
+  bool facing = true;  // touch only receivers that face the side the stroke was painted from, fading
+  float weight = 1;    // given to the receivers touched, as far as they face it
 };
 
 enum class StrokeBase : std::uint8_t { kBlack, kCurrent };
@@ -40,10 +50,12 @@ struct PaintOptions {
 struct PaintResult {
   Target target;
   std::vector<std::size_t> touched;  // receivers per stroke
+  std::vector<std::vector<std::size_t>>
+      far_points;  // per stroke: of its path, farther than its radius from any surface
 };
 
 // Applies the strokes in order to `base` (its illumination is what the strokes change; its weights become
-// unpainted_weight where no stroke touches). Distance is measured to the path's segments.
+// unpainted_weight where no stroke touches).
 PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options);
 
 }  // namespace chiaro::inverse

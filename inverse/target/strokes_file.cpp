@@ -24,6 +24,10 @@ constexpr std::array<std::pair<std::string_view, BrushMode>, 4> kModes{{{"add", 
                                                                         {"erase", BrushMode::kErase}}};
 constexpr std::array<std::pair<std::string_view, BrushFalloff>, 3> kFalloffs{
     {{"smooth", BrushFalloff::kSmooth}, {"hard", BrushFalloff::kHard}, {"gaussian", BrushFalloff::kGaussian}}};
+constexpr std::array<std::pair<std::string_view, BrushDistance>, 2> kDistances{
+    {{"surface", BrushDistance::kSurface}, {"space", BrushDistance::kSpace}}};
+constexpr std::array<std::pair<std::string_view, MirrorPlane>, 3> kMirrors{
+    {{"x", {{0, 0, 0}, {1, 0, 0}}}, {"y", {{0, 0, 0}, {0, 1, 0}}}, {"z", {{0, 0, 0}, {0, 0, 1}}}}};
 constexpr std::array<std::pair<std::string_view, StrokeBase>, 2> kBases{
     {{"black", StrokeBase::kBlack}, {"current", StrokeBase::kCurrent}}};
 
@@ -36,9 +40,29 @@ std::vector<Vec3f> read_path(const JsonField& field) {
   return path;
 }
 
+// Of a vector so short or long that its square is no float, too.
+Vec3f read_direction(const JsonField& field) {
+  const Vec3f direction = read_triple(field, {}, "three numbers, not all 0");
+  const float largest = max_component(abs(direction));
+  if (!(largest > 0)) field.fail("is [0, 0, 0]", "three numbers, not all 0");
+  return normalize(Vec3f{direction.x / largest, direction.y / largest, direction.z / largest});
+}
+
+MirrorPlane read_mirror(const JsonField& field) {
+  static constexpr std::string_view kKnown[] = {"point", "normal"};
+  static constexpr std::string_view kNeeded[] = {"normal"};
+  if (field.value.is_string()) return read_choice(field, kMirrors);
+  if (!field.value.is_object()) field.fail_as_found(R"("x", "y", "z" or an object with "point" and "normal")");
+  expect_object(field, kKnown, kNeeded);
+  MirrorPlane plane;
+  plane.normal = read_direction(field.member("normal"));
+  if (field.has("point")) plane.point = read_triple(field.member("point"), {}, "three finite numbers, metres");
+  return plane;
+}
+
 Stroke read_stroke(const JsonField& field) {
-  static constexpr std::string_view kKnown[] = {"mode",    "color", "radius", "falloff",
-                                                "opacity", "path",  "facing", "weight"};
+  static constexpr std::string_view kKnown[] = {"mode", "color",    "radius", "falloff", "opacity",
+                                                "path", "distance", "mirror", "facing",  "weight"};
   static constexpr std::string_view kNeeded[] = {"path"};
   expect_object(field, kKnown, kNeeded);
   const auto has = [&](const char* name) { return field.has(name); };
@@ -50,6 +74,8 @@ Stroke read_stroke(const JsonField& field) {
   if (has("falloff")) stroke.falloff = read_choice(field.member("falloff"), kFalloffs);
   if (has("opacity")) stroke.opacity = read_number(field.member("opacity"), {0, 1}, "a number from 0 to 1");
   stroke.path = read_path(field.member("path"));
+  if (has("distance")) stroke.distance = read_choice(field.member("distance"), kDistances);
+  if (has("mirror")) stroke.mirror = read_mirror(field.member("mirror"));
   if (has("facing")) stroke.facing = read_bool(field.member("facing"));
   if (has("weight")) stroke.weight = read_number(field.member("weight"), kNotNegative, "a number ≥ 0");
   return stroke;

@@ -60,6 +60,8 @@ double distance(const Box3f& box, Vec3f point) {
   return std::sqrt(squared);
 }
 
+bool overlap(const Box3f& a, const Box3f& b) { return min_component(min(a.max, b.max) - max(a.min, b.min)) >= 0; }
+
 struct Visitor {
   const BoxTree& tree;
   Vec3f point;
@@ -93,6 +95,18 @@ BoxTree make_box_tree(std::span<const Box3f> boxes) {
 void visit_near(const BoxTree& tree, Vec3f point, double reach,
                 const std::function<double(std::uint32_t item)>& visit) {
   if (!tree.nodes.empty() && distance(tree.nodes[0].box, point) <= reach) Visitor{tree, point, reach, visit}.enter(0);
+}
+
+void visit_overlapping(const BoxTree& tree, const Box3f& box, const std::function<void(std::uint32_t item)>& visit) {
+  std::vector<std::uint32_t> open;
+  if (!tree.nodes.empty()) open.push_back(0);
+  while (!open.empty()) {
+    const BoxTree::Node& node = tree.nodes[open.back()];
+    open.pop_back();
+    if (!overlap(node.box, box)) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(tree.items[i]);
+    if (node.count == 0) open.insert(open.end(), {node.first, node.first + 1});
+  }
 }
 
 }  // namespace chiaro::inverse

@@ -28,4 +28,8 @@ BoxTree make_box_tree(std::span<const renderer::Box3f> boxes);
 void visit_near(const BoxTree& tree, renderer::Vec3f point, double reach,
                 const std::function<double(std::uint32_t item)>& visit);
 
+// Calls visit(item) for every item of the leaves whose boxes overlap `box`.
+void visit_overlapping(const BoxTree& tree, const renderer::Box3f& box,
+                       const std::function<void(std::uint32_t item)>& visit);
+
 }  // namespace chiaro::inverse

@@ -183,7 +183,7 @@ TEST(PaintFacing, OfAThinBoardTheSidePaintedFromAloneIsTouched) {
   // 49 and 797 lattice points within 4 and 16 of one of them; below, 0.5 is measured along and 0.01 across.
   EXPECT_EQ(touched_on_both(board, 81, {{0.5F, 0, 0.5F}}, true), (Counts{49, 0}));
   EXPECT_EQ(touched_on_both(board, 81, {{0.5F, -0.01F, 0.5F}}, true), (Counts{0, 797}));
-  EXPECT_EQ(touched_on_both(board, 81, {{0.5F, -0.005F, 0.5F}}, false), (Counts{45, 793}));
+  EXPECT_EQ(touched_on_both(board, 81, {{0.5F, 0, 0.5F}}, false), (Counts{49, 0}));
 }
 
 TEST(PaintFacing, BetweenVerticesTheSurfaceDecidesNotTheNearestVertex) {
@@ -252,6 +252,100 @@ TEST(PaintFacing, WithoutTrianglesTheNearestReceiverDecides) {
   Receivers points = join(make_floor(), make_sheet({0, -0.01F, 0}, {1, 0, 0}, {0, 0, 1}, 9));
   points.triangles.clear();
   EXPECT_EQ(touched_on_both(points, 81, {{0.5F, 0, 0.5F}}, true), (Counts{49, 0}));
+}
+
+// A floor of 2 × 1 m, and on it at x = 1 a wall of two sheets, 4 cm apart and open below; it shares no vertex with the
+// floor, and its lower end is `sunk` below it.
+Receivers make_two_rooms(float sunk) {
+  Receivers rooms = make_sheet({0, 0, 0}, {0, 0, 1}, {2, 0, 0}, 21);
+  rooms = join(std::move(rooms), make_sheet({0.98F, -sunk, 0}, {0, 0, 1}, {0, 1, 0}, 8));
+  return join(std::move(rooms), make_sheet({1.02F, -sunk, 1}, {0, 0, -1}, {0, 1, 0}, 8));
+}
+
+struct Found {
+  float left = 0, right = 0, left_wall = 0, right_wall = 0;  // the largest weights painted
+};
+
+Found paint_two_rooms(float sunk, const Stroke& stroke) {
+  const Receivers rooms = make_two_rooms(sunk);
+  const Target painted = paint(make_target(rooms, {}), {StrokeBase::kBlack, {stroke}}, {0}).target;
+  Found found;
+  for (std::size_t i = 0; i < rooms.size(); ++i) {
+    const bool is_floor = i < 441, is_left = rooms.positions[i].x < 1;
+    if (is_floor && std::abs(rooms.positions[i].x - 1) < 0.03F) continue;  // inside the wall
+    float& largest = is_floor ? (is_left ? found.left : found.right) : is_left ? found.left_wall : found.right_wall;
+    largest = std::max(largest, painted.weight[i]);
+  }
+  return found;
+}
+
+TEST(PaintAlongSurface, AWallOnAFloorKeepsPaintInItsRoom) {
+  for (const float sunk : {0.0F, 0.05F, -0.001F}) {
+    SCOPED_TRACE(sunk);
+    Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+    stroke.path = {{0.83F, 0, 0.47F}};
+    for (const bool facing : {true, false}) {
+      stroke.facing = facing;
+      const Found found = paint_two_rooms(sunk, stroke);
+      EXPECT_EQ(found.left, 1);
+      EXPECT_EQ(found.right, 0);
+      EXPECT_EQ(found.left_wall, facing ? 0 : 1);
+      EXPECT_EQ(found.right_wall, 0);
+    }
+    stroke.distance = BrushDistance::kSpace;
+    EXPECT_EQ(paint_two_rooms(sunk, stroke).right, 1);
+  }
+}
+
+TEST(PaintAlongSurface, RoundTheRimOfABoardAsFarAsItIs) {
+  const Vec3f x{1, 0, 0}, y{0, 0.125F, 0}, z{0, 0, 1};
+  const Receivers top = make_floor(), bottom = make_sheet({0, -0.125F, 0}, x, z, 9);
+  const Receivers rim = make_sheet({1, -0.125F, 1}, -1 * z, y, 9);
+  const std::size_t first_of_bottom = top.size();
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.facing = false;
+  stroke.path = {{0.75F, 0, 0.5F}};
+  const Receivers board = join(join(top, bottom), rim);
+  const auto weights = paint(make_target(board, {}), {StrokeBase::kBlack, {stroke}}, {0}).target.weight;
+  for (std::size_t i = first_of_bottom; i < first_of_bottom + 81; ++i) {
+    const Vec3f p = board.positions[i];
+    const float around = std::hypot(0.25F + 0.125F + 1 - p.x, p.z - 0.5F);
+    EXPECT_EQ(weights[i], around <= 0.5F ? 1 : 0) << p.x << " " << p.z;
+  }
+}
+
+TEST(PaintAlongSurface, APathOfTwoPointsGoesThroughTheCorner) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.radius = 0.1F;
+  stroke.path = {{0.75F, 0, 0.4F}, {0, 0.75F, 0.6F}};
+  const auto weights = paint(make_target(make_corner(), {}), {StrokeBase::kBlack, {stroke}}, {0}).target.weight;
+  EXPECT_EQ(weights[floor_receiver(0, 4)], 1);
+  EXPECT_EQ(weights[floor_receiver(1, 4)], 1);
+  EXPECT_EQ(weights[81 + 4 * 9], 1);      // on the wall, in the corner
+  EXPECT_EQ(weights[81 + 4 * 9 + 1], 1);  // 0.125 up
+}
+
+TEST(PaintAlongSurface, PointsOffTheSurfaceGoToTheNearestOneThatFacesThem) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.path = {{0.5F, 0.3F, 0.5F}, {0.5F, 0.6F, 0.5F}};
+  const PaintResult result = paint_floor(stroke);
+  EXPECT_EQ(result.touched, std::vector<std::size_t>{49});
+  EXPECT_EQ(result.far_points, (std::vector<std::vector<std::size_t>>{{1}}));
+}
+
+TEST(PaintMirrored, PathAndMirrorImageAreOneStroke) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.radius = 0.26F;
+  stroke.path = {{0.25F, 0, 0.5F}};
+  stroke.mirror = MirrorPlane{{0.5F, 3, 0}, {1, 0, 0}};
+  const PaintResult result = paint_floor(stroke);
+  EXPECT_EQ(result.touched, std::vector<std::size_t>{13 + 13 - 1});  // lattice points within 2 of one of them
+  expect_near(result.target.illumination[floor_receiver(4, 4)], kBase + Vec3f{1, 2, 3});
+  for (int z = 0; z <= 8; ++z) {
+    for (int x = 0; x <= 8; ++x) {
+      EXPECT_EQ(result.target.weight[floor_receiver(x, z)], result.target.weight[floor_receiver(8 - x, z)]);
+    }
+  }
 }
 
 }  // namespace

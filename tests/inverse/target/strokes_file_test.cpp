@@ -17,7 +17,7 @@ Strokes load_text(const std::string& text) {
 TEST(StrokesFile, ReadsEveryField) {
   const Strokes strokes = load_text(R"({"base":"current","strokes":[
       {"mode":"multiply","color":[1,2.5,0],"radius":0.25,"falloff":"gaussian","opacity":0.5,
-       "path":[[0,1,2],[3,-4,5e-1]],"facing":false,"weight":2}]})");
+       "path":[[0,1,2],[3,-4,5e-1]],"distance":"space","mirror":{"point":[1,2,3],"normal":[0,-2,0]},"facing":false,"weight":2}]})");
   EXPECT_EQ(strokes.base, StrokeBase::kCurrent);
   ASSERT_EQ(strokes.strokes.size(), 1U);
   const Stroke& stroke = strokes.strokes[0];
@@ -27,6 +27,10 @@ TEST(StrokesFile, ReadsEveryField) {
   EXPECT_EQ(stroke.falloff, BrushFalloff::kGaussian);
   EXPECT_EQ(stroke.opacity, 0.5F);
   EXPECT_EQ(stroke.path, (std::vector<Vec3f>{{0, 1, 2}, {3, -4, 0.5F}}));
+  EXPECT_EQ(stroke.distance, BrushDistance::kSpace);
+  ASSERT_TRUE(stroke.mirror.has_value());
+  EXPECT_EQ(stroke.mirror->point, (Vec3f{1, 2, 3}));
+  EXPECT_EQ(stroke.mirror->normal, (Vec3f{0, -1, 0}));
   EXPECT_FALSE(stroke.facing);
   EXPECT_EQ(stroke.weight, 2);
 }
@@ -40,9 +44,23 @@ TEST(StrokesFile, WhatIsLeftOutHasTheDefaults) {
   EXPECT_EQ(stroke.radius, 0.3F);
   EXPECT_EQ(stroke.falloff, BrushFalloff::kSmooth);
   EXPECT_EQ(stroke.opacity, 1);
+  EXPECT_EQ(stroke.distance, BrushDistance::kSurface);
+  EXPECT_FALSE(stroke.mirror.has_value());
   EXPECT_TRUE(stroke.facing);
   EXPECT_EQ(stroke.weight, 1);
   EXPECT_EQ(strokes.strokes[1].mode, BrushMode::kErase);
+}
+
+TEST(StrokesFile, ReadsMirrorsAtCoordinatePlanes) {
+  const std::pair<const char*, Vec3f> axes[] = {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}};
+  for (const auto& [name, normal] : axes) {
+    const std::string text =
+        R"({"strokes":[{"mirror":")" + std::string(name) + R"(","color":[1,1,1],"path":[[0,0,0]]}]})";
+    const Stroke stroke = load_text(text).strokes[0];
+    ASSERT_TRUE(stroke.mirror.has_value());
+    EXPECT_EQ(stroke.mirror->point, (Vec3f{0, 0, 0}));
+    EXPECT_EQ(stroke.mirror->normal, normal);
+  }
 }
 
 TEST(StrokesFile, ReadsEveryModeAndFalloff) {
@@ -109,6 +127,13 @@ TEST(StrokesFile, FieldsOfAStrokeThatAreWrongAreNamed) {
       {third_stroke(R"("opacity":-0.5)"), "strokes[2].opacity", "is -0.5"},
       {third_stroke(R"("weight":-1)"), "strokes[2].weight", "is -1"},
       {third_stroke(R"("facing":1)"), "strokes[2].facing", "is 1"},
+      {third_stroke(R"("distance":"far")"), "strokes[2].distance", "\"far\""},
+      {third_stroke(R"("mirror":"w")"), "strokes[2].mirror", "\"w\""},
+      {third_stroke(R"("mirror":true)"), "strokes[2].mirror", "is true"},
+      {third_stroke(R"("mirror":{"point":[0,0,0]})"), "strokes[2].mirror", "no \"normal\""},
+      {third_stroke(R"("mirror":{"normal":[0,0,0]})"), "strokes[2].mirror.normal", "is [0, 0, 0]"},
+      {third_stroke(R"("mirror":{"normal":[0,1]})"), "strokes[2].mirror.normal", "array with 2"},
+      {third_stroke(R"("mirror":{"normal":[0,1,0],"axis":"x"})"), "strokes[2].mirror", "unknown key \"axis\""},
       {third_stroke(R"("colour":[1,1,1])"), "strokes[2]", "unknown key \"colour\""},
       {third_stroke(R"("a\nb":1)"), "strokes[2]", R"(unknown key "a\nb")"},
       {only_stroke(R"("path":[[0,0,0]])"), "strokes[0]", "no \"color\""},

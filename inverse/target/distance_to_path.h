@@ -1,0 +1,26 @@
+#pragma once
+// How far receivers are from a stroke's path.
+
+#include <cstdint>
+#include <vector>
+
+#include "inverse/target/surface_path.h"
+
+namespace chiaro::inverse {
+
+struct PathDistance {
+  std::uint32_t receiver = 0;
+  double distance = 0;      // metres, ≤ radius
+  std::uint32_t piece = 0;  // of the path: the nearest
+};
+
+// Along the surface, on the fronts of triangles: on the side that their corners' normals point to. Surfaces that meet
+// within 1/200 of the radius are one: what stands on a floor ends it, and the way goes on up there. Ascending.
+std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface, const SurfacePath& path,
+                                                  double radius);
+
+// Straight through space. Ascending.
+std::vector<PathDistance> distances_through_space(const ReceiverSurface& surface, const SurfacePath& path,
+                                                  double radius);
+
+}  // namespace chiaro::inverse

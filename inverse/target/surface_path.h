@@ -1,0 +1,46 @@
+#pragma once
+// A stroke's path, laid on the surface.
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "inverse/transport/box_tree.h"
+#include "inverse/transport/receivers.h"
+
+namespace chiaro::inverse {
+
+// Receivers' triangles and a tree of their boxes; without triangles every receiver is one by itself.
+struct ReceiverSurface {
+  const Receivers& receivers;
+  BoxTree tree;
+
+  renderer::Triangle triangle(std::uint32_t item) const {
+    return receivers.triangles.empty() ? renderer::Triangle{item, item, item} : receivers.triangles[item];
+  }
+};
+
+ReceiverSurface make_receiver_surface(const Receivers& receivers);
+
+struct SurfacePoint {
+  double distance = 0;  // metres from where it was looked for
+  Eigen::Vector3d position, normal;
+};
+
+SurfacePoint closest_on_surface(const ReceiverSurface& surface, std::uint32_t item, const Eigen::Vector3d& point);
+
+struct SurfacePath {
+  struct Piece {
+    Eigen::Vector3d from, to;  // the same: a point
+  };
+  std::vector<Piece> pieces;            // where two of them meet there is a point, too
+  std::vector<std::size_t> far_points;  // numbers of points that are farther than the radius from any surface
+};
+
+// Points go to the nearest place of a surface that faces them, if it is within `radius` (metres). From one to the next
+// the path goes where the surface is cut by the plane of both and of the normals there, the shortest way. Where no such
+// way leads there, the points of the straight line between them go to the surface, where it is within the radius.
+SurfacePath lay_on_surface(const ReceiverSurface& surface, std::span<const Vec3f> points, float radius);
+
+}  // namespace chiaro::inverse
