@@ -18,12 +18,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNarrow = 1.0 / 500;            // windows end: width < this × reach
-constexpr double kShortEdge = 1.0 / 12;          // vertices take over: edge ≤ this × reach
-constexpr double kFarAway = 1e6;                 // where the rays of a segment come from, × reach
-constexpr double kSaddle = 0.02;                 // rays bend at a vertex: its angles sum to > 2π + this
-constexpr double kSame = 1e-9;                   // no improvement: distances differ by ≤ this × reach
-constexpr std::size_t kMostWindows = 4'000'000;  // beyond, vertices alone go on
+constexpr double kNarrow = 1.0 / 500;          // windows end: width < this × reach
+constexpr double kShortEdge = 1.0 / 12;        // vertices take over: edge ≤ this × reach
+constexpr double kFarAway = 1e6;               // where the rays of a segment come from, × reach
+constexpr double kSaddle = 0.02;               // rays bend at a vertex: its angles sum to > 2π + this
+constexpr double kSame = 1e-9;                 // no improvement: distances differ by ≤ this × reach
+constexpr std::size_t kMostWindows = 200'000;  // and kWindowsPerCorner: beyond, vertices alone go on
+constexpr std::size_t kWindowsPerCorner = 10;
 constexpr double kPi = 3.14159265358979323846;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -134,7 +135,7 @@ class Propagation {
   void push(const Window& window) {
     const double t = closest_parameter(window);
     const double key = window.wave.distance(window.from + t * (window.to - window.from));
-    if (key > reach_ || is_useless(window) || made_ > kMostWindows) return;
+    if (key > reach_ || is_useless(window) || made_ > kMostWindows + kWindowsPerCorner * face_.size()) return;
     std::size_t slot = windows_.size();
     if (free_.empty()) {
       windows_.push_back(window);

@@ -92,7 +92,7 @@ class Joiner {
       const std::uint32_t from = grid_.find_or_add(contact.segment.from, tolerances_.contact);
       const std::uint32_t to = grid_.find_or_add(contact.segment.to, tolerances_.contact);
       ends_.insert(ends_.end(), {from, to});
-      for (const std::uint32_t triangle : {contact.a, contact.b}) cut(triangle, from, to);
+      for (const std::uint32_t triangle : {contact.a, contact.b}) cut(triangle, contact.segment);
     }
   }
 
@@ -101,11 +101,12 @@ class Joiner {
     const std::vector<std::uint32_t> stays = merge(find_concerned().corners);
     for (std::uint32_t& point : joined_.point_of) point = stays[point];
     for (std::uint32_t& point : ends_) point = stays[point];
-    for (auto& pieces : pieces_) {
-      for (Points& piece : pieces) {
-        for (std::uint32_t& point : piece) point = stays[point];
-      }
-      std::erase_if(pieces, [&](Points& piece) { return !is_face(piece); });
+    for (std::size_t t = 0; t < pieces_.size(); ++t) {
+      std::erase_if(pieces_[t], [&](Points& piece) {
+        bool moved = touched_[t];
+        for (std::uint32_t& point : piece) moved |= stays[point] != point, point = stays[point];
+        return !is_face(piece) || (moved && is_thin(piece));
+      });
     }
   }
 
@@ -136,15 +137,15 @@ class Joiner {
     return !(area_vector(p[0], p[1], p[2]).norm() > tolerances_.same_point * longest);
   }
 
-  void cut(std::uint32_t triangle, std::uint32_t from, std::uint32_t to) {
+  void cut(std::uint32_t triangle, const ContactSegment& segment) {
     triangle = joined_.same_triangle[triangle];
-    if (triangle == kNone || from == to) return;
+    if (triangle == kNone) return;
     touched_[triangle] = true;
     const std::array<std::uint32_t, 3>& t = triangles_[triangle];
     const Vector3d normal =
         area_vector(joined_.point_of[t[0]], joined_.point_of[t[1]], joined_.point_of[t[2]]).normalized();
     std::vector<Points> pieces;
-    for (const Points& piece : pieces_[triangle]) cut(piece, normal, {place(from), place(to)}, pieces);
+    for (const Points& piece : pieces_[triangle]) cut(piece, normal, segment, pieces);
     pieces_[triangle] = std::move(pieces);
   }
 
@@ -198,6 +199,17 @@ class Joiner {
     double area = 0;
     for (std::size_t k = 2; k < points.size(); ++k) area += area_vector(points[0], points[k - 1], points[k]).norm();
     return area > 0;
+  }
+
+  // It may have been turned over when corners moved; what is beside it is joined where it was.
+  bool is_thin(const Points& points) const {
+    Vector3d area = Vector3d::Zero();
+    double longest = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      area += 0.5 * area_vector(points[0], points[k], points[(k + 1) % points.size()]);
+      longest = std::max(longest, (place(points[(k + 1) % points.size()]) - place(points[k])).norm());
+    }
+    return area.norm() <= tolerances_.contact * longest;
   }
 
   using Edge = std::pair<std::uint32_t, std::uint32_t>;

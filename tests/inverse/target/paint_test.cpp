@@ -280,7 +280,7 @@ Found paint_two_rooms(float sunk, const Stroke& stroke) {
 }
 
 TEST(PaintAlongSurface, AWallOnAFloorKeepsPaintInItsRoom) {
-  for (const float sunk : {0.0F, 0.05F, -0.001F}) {
+  for (const float sunk : {0.0F, 0.0005F, 0.001F, 0.05F, -0.001F}) {
     SCOPED_TRACE(sunk);
     Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
     stroke.path = {{0.83F, 0, 0.47F}};
