@@ -23,6 +23,7 @@ constexpr double kShortEdge = 1.0 / 12;        // vertices take over: edge ≤ t
 constexpr double kFarAway = 1e6;               // where the rays of a segment come from, × reach
 constexpr double kSaddle = 0.02;               // rays bend at a vertex: its angles sum to > 2π + this
 constexpr double kSame = 1e-9;                 // no improvement: distances differ by ≤ this × reach
+constexpr double kOvertaken = 1e-3;            // windows end: later than this × reach, and more on long edges
 constexpr std::size_t kMostWindows = 200'000;  // and kWindowsPerCorner: beyond, vertices alone go on
 constexpr std::size_t kWindowsPerCorner = 10;
 constexpr double kPi = 3.14159265358979323846;
@@ -161,7 +162,21 @@ class Propagation {
       return window.wave.distance(gate) >
              reached_[corner(end).vertex].distance + (gate - place(end)).norm() + kSame * reach_;
     };
-    return later(a, window.to) || later(b, window.from);
+    return later(a, window.to) || later(b, window.from) || is_overtaken(window);
+  }
+
+  // By what the ends of its edge say of the places in between: a distance bends by ≤ length² / 8 radius there. Waves
+  // that meet do worse, but end there.
+  bool is_overtaken(const Window& window) const {
+    const std::uint32_t a = window.corner, b = next(a);
+    const double at_a = reached_[corner(a).vertex].distance, at_b = reached_[corner(b).vertex].distance;
+    if (!std::isfinite(at_a + at_b)) return false;
+    const double length = (place(b) - place(a)).norm();
+    const double margin = length * length / (4 * std::max(std::min(at_a, at_b), 0.5 * length)) + kOvertaken * reach_;
+    const auto later = [&](const Vector2d& gate) {
+      return window.wave.distance(gate) > std::lerp(at_a, at_b, (gate - place(a)).norm() / length) + margin;
+    };
+    return later(window.from) && later(window.to);
   }
 
   void enter(const Window& window) {
