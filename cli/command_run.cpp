@@ -127,9 +127,8 @@ int run_run(RunCommand options) {
   const inverse::Target& target = wanted.target;
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   make_folders(options);
-  JsonObject summary;
+  JsonObject summary = wanted.pictures;
   if (!wanted.from_file) inverse::save_target(target, options.folder() / "target.glb");
-  if (!wanted.images.empty()) summary.emplace_back("target_images", wanted.images);
   if (problem.lights_in_place.empty()) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
     problem.cache_file = options.folder() / "cache.exr";

@@ -40,7 +40,7 @@ void use_cache(const SolveCommand& options, inverse::SolveProblem& problem) {
 void print_summary(Session& session, const SolveCommand& options, const WantedTarget& wanted,
                    const inverse::SolveResult& result) {
   JsonObject summary = solve_summary(result);
-  if (!wanted.images.empty()) summary.emplace_back("target_images", wanted.images);
+  summary.insert(summary.end(), wanted.pictures.begin(), wanted.pictures.end());
   const std::string written =
       fmt::format("  written  {}, {}\n", options.output, beside(options.output, ".json").string());
   session.finish(summary, wanted.text + solve_text(result) + written);
@@ -103,11 +103,13 @@ CommandRun add_solve(CLI::App& command) {
   add_text(command, {"--report", "DIR", "Write what each stage found into this folder"}, options->report);
   add_common_options(command, options->common);
   command.get_option("--grid")->excludes("--cache");
-  set_examples(command,
-               "  chiaro solve room.glb --target painted.glb --cache room.exr -o lights.glb\n"
-               "  chiaro solve room.glb --target painted.glb -o lights.glb --max-lights 5 --report report\n"
-               "  chiaro solve room.glb --target-image Camera=painted.png --exposure 3 -o lights.glb\n"
-               "  chiaro solve room.glb --target painted.glb -o three.glb --from solve.json --lights 3");
+  set_examples(
+      command,
+      "  chiaro solve room.glb --target painted.glb --cache room.exr -o lights.glb\n"
+      "  chiaro solve room.glb --target painted.glb -o lights.glb --max-lights 5 --report report\n"
+      "  chiaro solve room.glb --target-image Camera=painted.png --exposure 3 -o lights.glb\n"
+      "  chiaro solve room.glb --target-lightmap Floor=floor.exr --target-lightmap Walls=walls.exr -o lights.glb\n"
+      "  chiaro solve room.glb --target painted.glb -o three.glb --from solve.json --lights 3");
   return [options] { return run_solve(*options); };
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli/add_options.h"
 #include "cli/camera_choice.h"
+#include "cli/target_lightmap.h"
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "inverse/target/target_from_values.h"
@@ -55,6 +56,22 @@ void add_picture_options(CLI::App& command, TargetChoices& choices) {
            choices.encoding.space);
   add_flag(command, "--keep-white", choices.encoding.keep_white,
            "White pixels of PNG, TIFF and JPEG pictures mean that white; else they may be brighter, and are left out");
+}
+
+NamedFile parse_lightmap(const std::string& text) {
+  NamedFile named = parse_named_file(text);
+  if (named.name.empty()) throw UsageError(fmt::format("'{}' (expected NODE=IMAGE)", text));
+  return named;
+}
+
+void add_lightmap_options(CLI::App& command, TargetChoices& choices) {
+  add_repeated(command,
+               {"--target-lightmap", "NODE=IMAGE",
+                "Illumination of that node's surface, laid out by its texture coordinates; again for a further one"},
+               [&choices](const std::string& text) { choices.lightmaps.push_back(parse_lightmap(text)); });
+  add_count(command,
+            {"--lightmap-uv", "N", "Lightmaps are laid out by TEXCOORD_N (default 1, or 0 where a mesh has no other)"},
+            choices.lightmap_uv, {0, renderer::kUvSetCount - 1});
 }
 
 std::string shown(const NamedFile& named) { return named.name.empty() ? "the first camera" : named.name; }
@@ -139,6 +156,8 @@ class TargetLoading {
 
   WantedTarget load() {
     for (const NamedFile& image : choices_.images) read_picture(image);
+    if (!images_.empty()) wanted_.pictures.emplace_back("target_images", images_);
+    if (!choices_.lightmaps.empty()) read_lightmaps();
     if (values_.empty()) {
       wanted_.target = from_file();
       wanted_.from_file = true;
@@ -171,9 +190,26 @@ class TargetLoading {
         session_.control());
     require_some_used(image, read.counts);
     warn_of_counts(image, read.counts, picture.pixels.size(), session_);
-    wanted_.images.emplace_back(picture_summary(image, camera, picture, read.counts));
+    images_.emplace_back(picture_summary(image, camera, picture, read.counts));
     wanted_.text += picture_text(image, camera, picture, read.counts);
     add(read.values, 1 / double(picture.pixels.size()));
+  }
+
+  // Together they count as one picture: a node that they cover by its area.
+  void read_lightmaps() {
+    std::vector<inverse::SurfaceValue> values;
+    JsonList summaries;
+    double area = 0;
+    for (const NamedFile& named : choices_.lightmaps) {
+      const TargetLightmap read = load_target_lightmap(*stage_.scene, {named.name, named.file, choices_.lightmap_uv},
+                                                       choices_.encoding, session_);
+      values.insert(values.end(), read.values.values.begin(), read.values.values.end());
+      area += read.values.area;
+      summaries.emplace_back(read.summary);
+      wanted_.text += read.text;
+    }
+    wanted_.pictures.emplace_back("target_lightmaps", summaries);
+    add(values, 1 / area);
   }
 
   // Pictures count alike, whatever their resolution.
@@ -202,8 +238,9 @@ class TargetLoading {
     for (std::size_t i = 0; i < weight.size(); ++i) {
       if (weight[i] > 0 && max_component(result.target.illumination[i]) > 0) return std::move(result.target);
     }
-    throw Error({choices_.images.front().file, "", "an empty target: black, or of surfaces without receivers",
-                 "illumination > 0 somewhere"});
+    const NamedFile& first = choices_.images.empty() ? choices_.lightmaps.front() : choices_.images.front();
+    throw Error(
+        {first.file, "", "an empty target: black, or of surfaces without receivers", "illumination > 0 somewhere"});
   }
 
   const LoadedStage& stage_;
@@ -211,6 +248,7 @@ class TargetLoading {
   Session& session_;
   std::vector<renderer::Camera> cameras_;
   std::vector<inverse::SurfaceValue> values_;
+  JsonList images_;
   WantedTarget wanted_;
 };
 
@@ -220,17 +258,20 @@ void add_target_options(CLI::App& command, TargetChoices& choices) {
   add_text(command, {"--target", "T.glb", "The painted illumination"}, choices.file);
   add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, choices.scale, kPositive);
   add_picture_options(command, choices);
+  add_lightmap_options(command, choices);
   add_surface_options(command, choices.surface);
 }
 
 void require_a_target(const TargetChoices& choices) {
-  if (choices.file.empty() && choices.images.empty()) {
-    throw UsageError("nothing is wanted (expected --target T.glb or --target-image CAMERA=IMAGE)");
+  const bool pictures = !choices.images.empty() || !choices.lightmaps.empty();
+  if (choices.file.empty() && !pictures) {
+    throw UsageError(
+        "nothing is wanted (expected --target T.glb, --target-image CAMERA=IMAGE or --target-lightmap NODE=IMAGE)");
   }
   if (!choices.file.empty() && (!choices.surface.on.empty() || choices.surface.max_edge > 0)) {
     throw UsageError("--target has receivers of its own (expected neither --on nor --max-edge)");
   }
-  if (choices.encoding.view.auto_exposure && !choices.images.empty()) {
+  if (choices.encoding.view.auto_exposure && pictures) {
     throw UsageError("--exposure: auto does not tell what a painted picture's white is (expected a number)");
   }
   require_masks_of_pictures(choices);

@@ -1,5 +1,5 @@
 #pragma once
-// What is wanted: a target file, painted pictures, or several of them together.
+// What is wanted: a target file, painted pictures, lightmaps, or several of them together.
 
 #include <optional>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace chiaro::cli {
 
-// "CAMERA=IMAGE"; without CAMERA, the scene's first.
+// "CAMERA=IMAGE"; without CAMERA, the scene's first. Or "NODE=IMAGE".
 struct NamedFile {
   std::string name, file;
 };
@@ -24,6 +24,8 @@ struct TargetChoices {
   float scale = 1;         // cd/m² per COLOR_0, where a target file has no _ILLUMINATION
   SurfaceOptions surface;  // where there is no target file
   std::vector<NamedFile> images, masks;
+  std::vector<NamedFile> lightmaps;  // of nodes
+  std::optional<int> lightmap_uv;
   inverse::PictureContent content = inverse::PictureContent::kBeauty;
   PictureEncoding encoding;
 };
@@ -37,7 +39,7 @@ void require_a_target(const TargetChoices& choices);
 struct WantedTarget {
   inverse::Target target;
   bool from_file = false;  // and nothing else
-  JsonList images;         // what was made of each picture
+  JsonObject pictures;     // "target_images" and "target_lightmaps": what was made of each; none where there are none
   std::string text;        // the same for people
 };
 
