@@ -19,9 +19,13 @@ double locus_y(double t, double x) {
 
 }  // namespace
 
+Chromaticity planckian_locus(double kelvin) {
+  const double t = std::clamp(kelvin, kLeastKelvin, kMostKelvin), x = locus_x(t);
+  return {x, locus_y(t, x)};
+}
+
 Vec3f blackbody_color(double kelvin) {
-  const double t = std::clamp(kelvin, kLeastKelvin, kMostKelvin);
-  const double x = locus_x(t), y = locus_y(t, x);
+  const auto [x, y] = planckian_locus(kelvin);
   const double X = x / y, Z = (1 - x - y) / y;
   const double r = 3.2409699 * X - 1.5373832 - 0.4986108 * Z;
   const double g = -0.9692436 * X + 1.8759675 + 0.0415551 * Z;
