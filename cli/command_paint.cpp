@@ -7,6 +7,7 @@
 #include "cli/add_options.h"
 #include "cli/commands.h"
 #include "cli/illumination_base.h"
+#include "cli/illumination_view.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
@@ -21,6 +22,7 @@ struct PaintCommand {
   CommonOptions common;
   TransportOptions transport;
   SurfaceOptions surface;
+  IlluminationPictureOptions picture;
   std::string scene, strokes, from, output;
   std::optional<float> unpainted_weight;
 };
@@ -99,12 +101,14 @@ void print_summary(Session& session, const PaintCommand& options, const inverse:
 int run_paint(const PaintCommand& options) {
   Session session(options.common);
   require_writable(options.output);
+  require_picture(options.picture);
   const inverse::Strokes strokes = inverse::load_strokes(options.strokes);
   const inverse::Target base = make_base(options, strokes, session);
   const inverse::PaintResult result = apply_strokes(options, base, strokes);
   session.stop_if_interrupted();
   warn_of_misses(options, result, session);
   inverse::save_target(result.target, options.output);
+  save_illumination_picture(options.picture, options.scene, options.transport, result.target, session);
   print_summary(session, options, result);
   return kDone;
 }
@@ -122,11 +126,13 @@ CommandRun add_paint(CLI::App& command) {
       {"--unpainted-weight", "W",
        "Weight of receivers that no stroke touches (default: 1 on current, 0.05 on black, as it was with --from)"},
       options->unpainted_weight, kNotNegative);
+  add_illumination_picture_options(command, options->picture);
   add_surface_options(command, options->surface);
   add_transport_options(command, options->transport, "Paths per receiver where the base is current");
   add_common_options(command, options->common);
   set_examples(command,
                "  chiaro paint room.glb --strokes strokes.json -o painted.glb\n"
+               "  chiaro paint room.glb --strokes strokes.json -o painted.glb --picture painted.png --exposure 1\n"
                "  chiaro paint room.glb --strokes more.json --from painted.glb -o painted2.glb");
   return [options] { return run_paint(*options); };
 }

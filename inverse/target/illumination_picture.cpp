@@ -1,0 +1,75 @@
+#include "inverse/target/illumination_picture.h"
+
+#include <optional>
+
+#include "inverse/target/receiver_lookup.h"
+#include "renderer/core/error.h"
+#include "renderer/trace/camera_rays.h"
+#include "renderer/trace/surface_point.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr int kGrid = 2;              // samples along a side of a pixel
+constexpr float kMostlyKnown = 0.5F;  // of the weights of a triangle's corners, those that the target weighs, or more
+
+class IlluminationView {
+ public:
+  IlluminationView(const renderer::RayTracer& tracer, const Target& target, const PictureFrame& frame)
+      : tracer_(tracer), target_(target), lookup_(target.receivers), rays_(frame.camera, frame.width, frame.height) {}
+
+  void write_pixel(int x, int y, float* pixel) const {
+    for (int row = 0; row < kGrid; ++row) {
+      for (int column = 0; column < kGrid; ++column) {
+        const auto value = seen({float(x) + (float(column) + 0.5F) / kGrid, float(y) + (float(row) + 0.5F) / kGrid});
+        if (!value) continue;
+        for (int c = 0; c < 3; ++c) pixel[c] += (*value)[c] / (kGrid * kGrid);
+        pixel[3] += 1.0F / (kGrid * kGrid);
+      }
+    }
+  }
+
+ private:
+  std::optional<Vec3f> seen(renderer::Vec2f film) const {
+    renderer::Ray ray = rays_.at(film);
+    ray.of_camera = true;
+    const auto hit = tracer_.intersect(ray);
+    if (!hit) return std::nullopt;
+    const renderer::SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
+    const auto at = lookup_.find(point.position, point.geometric_normal);
+    return at ? known(*at) : std::nullopt;
+  }
+
+  std::optional<Vec3f> known(const ReceiverWeights& at) const {
+    Vec3f sum;
+    float weights = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(target_.weight[at.receivers[k]] > 0)) continue;
+      sum += at.weights[k] * target_.illumination[at.receivers[k]];
+      weights += at.weights[k];
+    }
+    if (weights < kMostlyKnown) return std::nullopt;
+    return sum / weights;
+  }
+
+  const renderer::RayTracer& tracer_;
+  const Target& target_;
+  ReceiverLookup lookup_;
+  renderer::CameraRays rays_;
+};
+
+}  // namespace
+
+renderer::Image illumination_picture(const renderer::RayTracer& tracer, const Target& target, const PictureFrame& frame,
+                                     const renderer::Control& control) {
+  CHIARO_CHECK(target.illumination.size() == target.receivers.size());
+  CHIARO_CHECK(target.weight.size() == target.receivers.size());
+  const IlluminationView view(tracer, target, frame);
+  renderer::Image image = renderer::make_image(frame.width, frame.height, {"R", "G", "B", "A"});
+  renderer::parallel_for(std::size_t(frame.height), "picturing illumination", control, [&](std::size_t y) {
+    for (int x = 0; x < frame.width; ++x) view.write_pixel(x, int(y), image.at(x, int(y)));
+  });
+  return image;
+}
+
+}  // namespace chiaro::inverse
