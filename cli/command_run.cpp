@@ -3,15 +3,18 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/add_options.h"
 #include "cli/bake_summary.h"
+#include "cli/command_text.h"
 #include "cli/commands.h"
 #include "cli/comparison_summary.h"
 #include "cli/frame_output.h"
 #include "cli/memory.h"
 #include "cli/output_paths.h"
 #include "cli/program.h"
+#include "cli/run_pictures.h"
 #include "cli/solve_options.h"
 #include "cli/text_output.h"
 #include "inverse/transport/bake_file.h"
@@ -30,6 +33,7 @@ struct RunCommand {
   FrameOptions frame;
   int frame_samples = kDefaultFrameSamples;
   std::string scene, output;
+  const CLI::App* command = nullptr;
 
   std::filesystem::path folder() const { return output; }
 };
@@ -64,32 +68,39 @@ std::string unused_name(const std::string& name, std::set<std::string>& used) {
   return candidate;
 }
 
-JsonObject render_camera(const RunCommand& options, const LoadedStage& stage, const renderer::Camera& camera,
-                         const renderer::Lights& lights, const std::filesystem::path& file, Session& session) {
+renderer::Frame render_camera(const RunCommand& options, const LoadedStage& stage, const renderer::Camera& camera,
+                              const renderer::Lights& lights, const std::filesystem::path& file, Session& session) {
   TransportOptions transport = options.choices.transport;
   transport.samples = options.frame_samples;
-  const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
-                                             {trace_options(transport, options.common), session.control()});
+  renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
+                                       {trace_options(transport, options.common), session.control()});
   if (frame.interrupted) throw renderer::Interruption();
   warn_of_frame(frame, camera.name, session);
   const FrameOrigin origin = frame_origin(options.scene, transport, options.common);
   save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
   save_preview(frame.image, beside(file, ".png"), options.frame);
-  return frame_summary(frame, camera.name);
+  return frame;
 }
 
-JsonList render_cameras(const RunCommand& options, const LoadedStage& stage, const renderer::Lights& lights,
-                        Session& session) {
-  JsonList frames;
+struct RenderedCameras {
+  JsonList summaries;
+  std::vector<PageCamera> pages;
+};
+
+RenderedCameras render_cameras(const RunCommand& options, const LoadedStage& stage, const renderer::Lights& lights,
+                               const RunPictures& pictures, Session& session) {
+  RenderedCameras rendered;
   std::set<std::string> used;
   for (const renderer::Camera& camera : cameras_of(stage, session)) {
     const std::string name = unused_name(camera.name, used);
-    JsonObject frame =
+    const renderer::Frame frame =
         render_camera(options, stage, camera, lights, options.folder() / "frames" / (name + ".exr"), session);
-    frame.emplace(frame.begin(), "file", "frames/" + name + ".exr");
-    frames.emplace_back(std::move(frame));
+    JsonObject summary = frame_summary(frame, camera.name);
+    summary.emplace(summary.begin(), "file", "frames/" + name + ".exr");
+    rendered.summaries.emplace_back(std::move(summary));
+    rendered.pages.push_back(make_page_camera(pictures, camera, name, frame.image, session.control()));
   }
-  return frames;
+  return rendered;
 }
 
 // What the lights found give, beside the target on the same receivers.
@@ -105,12 +116,42 @@ void print_summary(Session& session, const RunCommand& options, const std::strin
   renderer::write_file_atomically(options.folder() / "summary.json", json_text(without_seconds(summary)));
   session.finish(summary, text + aligned_rows({{"frames", fmt::format("{}", frames)},
                                                {"time", text_of_seconds(session.seconds())},
-                                               {"written", options.output}}));
+                                               {"written", options.output},
+                                               {"page", (options.folder() / "index.html").string()}}));
+}
+
+std::string text_of_view(const ViewChoice& choice) {
+  const auto or_default = [](const std::string& name) { return name.empty() ? "default" : name; };
+  const std::string exposure = choice.auto_exposure ? "auto" : fmt::format("{:+g} EV", choice.view.exposure);
+  return fmt::format("display {}, view {}, exposure {}", or_default(choice.view.display), or_default(choice.view.view),
+                     exposure);
+}
+
+std::vector<TextRow> settings_of(const RunCommand& options, const LoadedStage& stage, const inverse::Target& target) {
+  const TransportOptions& transport = options.choices.transport;
+  return {{"seed", fmt::format("{}", options.common.seed)},
+          {"materials", text_of_materials(transport.materials)},
+          {"bounces", transport.bounces ? fmt::format("{}", *transport.bounces) : "until they no longer matter"},
+          {"samples of the bake", fmt::format("{}", transport.samples)},
+          {"paths per pixel", fmt::format("{}", options.frame_samples)},
+          {"pictures", text_of_view(options.frame.view)},
+          {"receivers", fmt::format("{}", target.receivers.size())},
+          {"fingerprint of the scene", renderer::fingerprint(*stage.scene)},
+          {"fingerprint of the receivers", inverse::fingerprint(target.receivers)}};
+}
+
+std::string text_of_wanted(const TargetChoices& choices) {
+  std::vector<std::string> sources;
+  if (!choices.file.empty()) sources.push_back(choices.file);
+  for (const NamedFile& image : choices.images) sources.push_back(image.file);
+  for (const NamedFile& lightmap : choices.lightmaps) sources.push_back(lightmap.file);
+  return fmt::format("The lights that bring it closest to {}", fmt::join(sources, ", "));
 }
 
 void make_folders(const RunCommand& options) {
   make_folder(options.folder());
   make_folder(options.folder() / "frames");
+  make_folder(options.folder() / "pictures");
 }
 
 int run_run(RunCommand options) {
@@ -139,12 +180,24 @@ int run_run(RunCommand options) {
   const inverse::Target found = found_target(target, result);
   inverse::save_target(found, options.folder() / "found.glb");
   const inverse::TargetComparison comparison = inverse::compare_targets(found, target);
-  const JsonList frames = render_cameras(options, stage, lights_of(result, problem), session);
+  const RenderedCameras rendered =
+      render_cameras(options, stage, lights_of(result, problem),
+                     {*stage.tracer, target, found, options.frame, options.folder() / "pictures"}, session);
   summary.emplace_back("solve", solve_summary(result));
   summary.emplace_back("comparison", comparison_summary(comparison, target.receivers.positions[comparison.max_at]));
-  summary.emplace_back("frames", frames);
+  summary.emplace_back("frames", rendered.summaries);
   summary.emplace_back("seconds", session.seconds());
-  print_summary(session, options, wanted.text + solve_text(result), summary, frames.size());
+  const RunPage page{.scene = std::filesystem::path(options.scene).filename().string(),
+                     .wanted = text_of_wanted(options.choices.target),
+                     .result = result,
+                     .comparison = comparison,
+                     .kept_lights = problem.kept_lights,
+                     .cameras = rendered.pages,
+                     .settings = settings_of(options, stage, target),
+                     .command = command_text(*options.command, "again"),
+                     .summary = summary};
+  renderer::write_file_atomically(options.folder() / "index.html", make_run_page(page));
+  print_summary(session, options, wanted.text + solve_text(result), summary, rendered.pages.size());
   return kDone;
 }
 
@@ -152,6 +205,7 @@ int run_run(RunCommand options) {
 
 CommandRun add_run(CLI::App& command) {
   const auto options = std::make_shared<RunCommand>();
+  options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_input(command, {"-o,--output", "DIR", "Folder for all results; made where it is missing"}, options->output);
   add_solve_options(command, options->choices);
