@@ -1,8 +1,6 @@
 #pragma once
 // The illumination of a target as a camera sees it.
 
-#include <array>
-
 #include "inverse/target/target.h"
 #include "renderer/image/image.h"
 #include "renderer/trace/ray_tracer.h"
