@@ -181,59 +181,52 @@ class TargetLoading {
 
   void read_picture(const NamedFile& image) {
     const renderer::Camera camera = choose_camera(*stage_.scene, image.name, session_);
-    cameras_.push_back(camera);
     PaintedPicture picture = load_painted_picture(image.file, choices_.encoding);
     apply_masks(choices_, image, picture);
     warn_of_picture(image, picture, camera, session_);
-    const inverse::FrameValues read = inverse::values_of_frame(
+    inverse::FrameValues read = inverse::values_of_frame(
         *stage_.tracer, {camera, picture.width, picture.height, picture.pixels, picture.weight, choices_.content},
         session_.control());
     require_some_used(image, read.counts);
     warn_of_counts(image, read.counts, picture.pixels.size(), session_);
     images_.emplace_back(picture_summary(image, camera, picture, read.counts));
     wanted_.text += picture_text(image, camera, picture, read.counts);
-    add(read.values, 1 / double(picture.pixels.size()));
+    const std::size_t first = values_.size();
+    add(std::move(read.values));
+    scale_weights(first, 1 / double(picture.pixels.size()));  // pictures count alike, whatever their resolution
   }
 
   // Together they count as one picture: a node that they cover by its area.
   void read_lightmaps() {
-    std::vector<inverse::SurfaceValue> values;
+    const std::size_t first = values_.size();
     JsonList summaries;
     double area = 0;
     for (const NamedFile& named : choices_.lightmaps) {
-      const TargetLightmap read = load_target_lightmap(*stage_.scene, {named.name, named.file, choices_.lightmap_uv},
-                                                       choices_.encoding, session_);
-      values.insert(values.end(), read.values.values.begin(), read.values.values.end());
+      TargetLightmap read = load_target_lightmap(*stage_.scene, {named.name, named.file, choices_.lightmap_uv},
+                                                 choices_.encoding, session_);
+      add(std::move(read.values.values));
       area += read.values.area;
       summaries.emplace_back(read.summary);
       wanted_.text += read.text;
     }
     wanted_.pictures.emplace_back("target_lightmaps", summaries);
-    add(values, 1 / area);
+    scale_weights(first, 1 / area);
   }
 
-  // Pictures count alike, whatever their resolution.
-  void add(const std::vector<inverse::SurfaceValue>& values, double scale) {
-    for (inverse::SurfaceValue value : values) {
-      value.weight = float(double(value.weight) * scale);
-      values_.push_back(value);
+  void add(std::vector<inverse::SurfaceValue> values) {
+    if (values_.empty()) {
+      values_ = std::move(values);
+    } else {
+      values_.insert(values_.end(), values.begin(), values.end());
     }
   }
 
-  void leave_out_hidden(inverse::Target& target) const {
-    std::vector<bool> seen(target.receivers.size());
-    for (const renderer::Camera& camera : cameras_) {
-      const std::vector<bool> here = inverse::receivers_seen(*stage_.tracer, target.receivers, camera);
-      for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || here[i];
-    }
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (!seen[i]) target.weight[i] = 0;
-    }
+  void scale_weights(std::size_t first, double scale) {
+    for (std::size_t i = first; i < values_.size(); ++i) values_[i].weight = float(double(values_[i].weight) * scale);
   }
 
   inverse::Target from_values(const inverse::Receivers& receivers) const {
     inverse::TargetFromValues result = inverse::target_from_values(receivers, values_, session_.control());
-    leave_out_hidden(result.target);
     const auto& weight = result.target.weight;
     for (std::size_t i = 0; i < weight.size(); ++i) {
       if (weight[i] > 0 && max_component(result.target.illumination[i]) > 0) return std::move(result.target);
@@ -246,7 +239,6 @@ class TargetLoading {
   const LoadedStage& stage_;
   const TargetChoices& choices_;
   Session& session_;
-  std::vector<renderer::Camera> cameras_;
   std::vector<inverse::SurfaceValue> values_;
   JsonList images_;
   WantedTarget wanted_;

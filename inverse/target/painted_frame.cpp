@@ -149,27 +149,7 @@ void count(PixelCounts& counts, PixelKind kind) {
   }
 }
 
-Ray ray_to_camera(const renderer::SurfaceSample& sample, const renderer::Camera& camera, float far) {
-  const renderer::Mat4f& m = camera.world_from_camera;
-  const Vec3f backwards = normalize(transform_direction(m, Vec3f{0, 0, 1}));
-  const Vec3f eye = camera.orthographic ? sample.position + far * backwards : transform_point(m, {0, 0, 0});
-  Ray ray = renderer::ray_between(sample.position, eye, 0);
-  ray.of_camera = true;
-  return ray;
-}
-
 }  // namespace
-
-std::vector<bool> receivers_seen(const RayTracer& tracer, const Receivers& receivers, const renderer::Camera& camera) {
-  const float far = 2 * tracer.bounds().diagonal();
-  std::vector<char> seen(receivers.size());
-  renderer::parallel_for(seen.size(), [&](std::size_t i) {
-    const Ray ray = ray_to_camera(receivers.samples[i], camera, far);
-    seen[i] =
-        char(dot(ray.direction, receivers.samples[i].normal) > 0 && tracer.passage(ray) == renderer::Passage::kFree);
-  });
-  return {seen.begin(), seen.end()};
-}
 
 FrameValues values_of_frame(const RayTracer& tracer, const PaintedFrame& frame, const renderer::Control& control) {
   CHIARO_CHECK(frame.pixels.size() == std::size_t(frame.width) * std::size_t(frame.height));

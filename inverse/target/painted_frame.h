@@ -45,9 +45,4 @@ struct FrameValues {
 FrameValues values_of_frame(const renderer::RayTracer& tracer, const PaintedFrame& frame,
                             const renderer::Control& control = {});
 
-// Which receivers a camera sees, within its frame or not. Of a hidden one beside seen surface nothing is known: a
-// picture shows the light up to the edge of what stands before it, and not the light under it.
-std::vector<bool> receivers_seen(const renderer::RayTracer& tracer, const Receivers& receivers,
-                                 const renderer::Camera& camera);
-
 }  // namespace chiaro::inverse

@@ -23,11 +23,13 @@ constexpr double kTolerance = 1e-8;  // relative residual of the linear system, 
 // Variance of an interpolating fit against that of the mean of the values around a receiver, on regular triangles.
 constexpr double kFitVariance = 3.5;
 constexpr double kMuchScatter = 2;  // times the common one: what noise does not explain
+constexpr std::size_t kValuesAtOnce = 1 << 20;
 
 struct PlacedValue {
   ReceiverWeights at;
   Vec3f illumination;
   double weight = 0;
+  std::size_t number = 0;  // among the values given
 };
 
 std::vector<PlacedValue> place(const Receivers& receivers, std::span<const SurfaceValue> values,
@@ -39,7 +41,7 @@ std::vector<PlacedValue> place(const Receivers& receivers, std::span<const Surfa
   });
   std::vector<PlacedValue> placed;
   for (std::size_t s = 0; s < values.size(); ++s) {
-    if (at[s]) placed.push_back({*at[s], values[s].illumination, values[s].weight});
+    if (at[s]) placed.push_back({*at[s], values[s].illumination, values[s].weight, s});
   }
   return placed;
 }
@@ -71,23 +73,38 @@ Colors means_of(const Sums& sums) {
   return means;
 }
 
-// Of the weighted squares between values and interpolation, and of kTowardsMean times those between receivers and
-// means.
-SparseMatrix normal_matrix(const std::vector<PlacedValue>& values, const Sums& sums) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const PlacedValue& value : values) {
-    for (int k = 0; k < 3; ++k) {
-      for (int l = 0; l < 3; ++l) {
-        const double w = value.weight * double(value.at.weights[k]) * double(value.at.weights[l]);
-        entries.emplace_back(int(value.at.receivers[k]), int(value.at.receivers[l]), w);
-      }
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+SparseMatrix matrix_of(const Entries& entries, Index receivers) {
+  SparseMatrix matrix(receivers, receivers);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+void append_products(const PlacedValue& value, Entries& entries) {
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 3; ++l) {
+      const double w = value.weight * double(value.at.weights[k]) * double(value.at.weights[l]);
+      entries.emplace_back(int(value.at.receivers[k]), int(value.at.receivers[l]), w);
     }
   }
+}
+
+// Of the weighted squares between values and interpolation, and of kTowardsMean times those between receivers and
+// means. Summed up in parts, as there may be many more values than receivers.
+SparseMatrix normal_matrix(const std::vector<PlacedValue>& values, const Sums& sums) {
+  Entries entries;
   for (Index i = 0; i < sums.weight.size(); ++i) {
     entries.emplace_back(int(i), int(i), sums.weight[i] > 0 ? kTowardsMean * sums.weight[i] : 1);
   }
-  SparseMatrix normal(sums.weight.size(), sums.weight.size());
-  normal.setFromTriplets(entries.begin(), entries.end());
+  SparseMatrix normal = matrix_of(entries, sums.weight.size());
+  for (std::size_t first = 0; first < values.size(); first += kValuesAtOnce) {
+    entries.clear();
+    for (std::size_t i = first; i < std::min(first + kValuesAtOnce, values.size()); ++i) {
+      append_products(values[i], entries);
+    }
+    normal += matrix_of(entries, sums.weight.size());
+  }
   return normal;
 }
 
@@ -151,6 +168,46 @@ std::vector<float> standard_errors(const std::vector<PlacedValue>& values, const
   return errors;
 }
 
+// Of each receiver the value nearest to it, by barycentric coordinates.
+std::vector<const PlacedValue*> nearest_values(const std::vector<PlacedValue>& values, std::size_t receivers) {
+  std::vector<const PlacedValue*> nearest(receivers, nullptr);
+  std::vector<float> nearness(receivers, 0);
+  for (const PlacedValue& value : values) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t i = value.at.receivers[k];
+      if (value.at.weights[k] <= nearness[i]) continue;
+      nearness[i] = value.at.weights[k];
+      nearest[i] = &value;
+    }
+  }
+  return nearest;
+}
+
+renderer::SurfaceSample sample_at(const Receivers& receivers, const ReceiverWeights& at, const SurfaceValue& value) {
+  Vec3f normal;
+  float radius = 0;
+  for (int k = 0; k < 3; ++k) {
+    normal += at.weights[k] * receivers.normals[at.receivers[k]];
+    radius = std::max(radius, length(receivers.positions[at.receivers[k]] - value.position));
+  }
+  const float rounding = renderer::surface_rounding(max_component(abs(value.position)), radius);
+  return {renderer::offset_point(value.position, value.normal, rounding),
+          length(normal) > 0 ? normalize(normal) : value.normal};
+}
+
+// Illumination is taken where values are, and not where nothing is known: a receiver under the edge of what stands
+// before it is not lit as what is seen beside it.
+void move_samples(std::span<const SurfaceValue> values, const std::vector<PlacedValue>& placed, const Colors& fitted,
+                  Target& target) {
+  const std::vector<const PlacedValue*> nearest = nearest_values(placed, target.receivers.size());
+  target.receivers.samples.resize(target.receivers.size());
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    if (nearest[i] == nullptr) continue;
+    target.receivers.samples[i] = sample_at(target.receivers, nearest[i]->at, values[nearest[i]->number]);
+    target.illumination[i] = to_vec3f(Eigen::Vector3d(interpolated(fitted, nearest[i]->at)));
+  }
+}
+
 // 1 on average where it is not 0.
 std::vector<float> normalized(const Eigen::VectorXd& weight) {
   const double mean = weight.sum() / std::max<double>(1, double((weight.array() > 0).count()));
@@ -171,6 +228,7 @@ TargetFromValues target_from_values(const Receivers& receivers, std::span<const 
   for (Index i = 0; i < fitted.rows(); ++i) {
     result.target.illumination.push_back(to_vec3f(Eigen::Vector3d(fitted.row(i))));
   }
+  move_samples(values, placed, fitted, result.target);
   result.target.weight = normalized(sums.weight);
   result.target.standard_error = standard_errors(placed, sums, fitted);
   const auto given = std::count_if(values.begin(), values.end(), [](const SurfaceValue& v) { return v.weight > 0; });
@@ -187,6 +245,7 @@ Target combine(const Target& a, const Target& b) {
     const float total = a.weight[i] + b.weight[i];
     if (!(total > 0)) continue;
     const float part = b.weight[i] / total;
+    if (part > 0.5F) sum.receivers.samples[i] = b.receivers.samples[i];
     sum.illumination[i] = lerp(part, a.illumination[i], b.illumination[i]);
     sum.weight[i] = total;
     if (errors) sum.standard_error[i] = std::hypot((1 - part) * a.standard_error[i], part * b.standard_error[i]);

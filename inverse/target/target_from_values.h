@@ -20,7 +20,8 @@ struct SurfaceValue {
 };
 
 struct TargetFromValues {
-  Target target;               // weight 0 where no value is; 1 on average elsewhere
+  // Weight 0 where no value is; 1 on average elsewhere. Samples of receivers lie where the values nearest to them do.
+  Target target;
   std::size_t not_placed = 0;  // values where the surface has no receivers
 };
 
@@ -29,7 +30,7 @@ struct TargetFromValues {
 TargetFromValues target_from_values(const Receivers& receivers, std::span<const SurfaceValue> values,
                                     const renderer::Control& control = {});
 
-// Both targets of the same receivers, each value by its weights.
+// Both targets of the same receivers, each value by its weights; sampled where the heavier is.
 Target combine(const Target& a, const Target& b);
 
 }  // namespace chiaro::inverse

@@ -160,8 +160,9 @@ TEST(Lightmap, BringsALinearFieldToTheReceivers) {
   const TargetFromValues result = target_from_values(receivers, values_of_lightmap(scene, map).values);
   EXPECT_EQ(result.not_placed, 0U);
   for (std::size_t i = 0; i < receivers.size(); ++i) {
-    EXPECT_NEAR(result.target.illumination[i].x, receivers.positions[i].z / 4, 0.01F);
-    EXPECT_NEAR(result.target.illumination[i].y, receivers.positions[i].x / 2, 0.02F);
+    const Vec3f at = result.target.receivers.samples[i].position;
+    EXPECT_NEAR(result.target.illumination[i].x, at.z / 4, 0.01F);
+    EXPECT_NEAR(result.target.illumination[i].y, at.x / 2, 0.02F);
   }
 }
 

@@ -121,25 +121,5 @@ TEST(PaintedFrame, LeavesOutBackgroundEdgesAndWhatIsNotFinite) {
   EXPECT_EQ(total(counts), std::size_t(kWidth) * kHeight);
 }
 
-TEST(PaintedFrame, SeesReceiversThatNothingStandsBefore) {
-  Scene scene;
-  test::add_mesh(scene, test::sphere({0, 0, 0}, 0.5F, 16), lambert({1, 1, 1}), "ball");
-  test::add_mesh(scene, test::rectangle({-2, -1, 2}, {4, 0, 0}, {0, 0, -4}, 16), lambert({1, 1, 1}), "floor");
-  const RayTracer tracer(scene);
-  const Receivers receivers = make_receivers(scene, {});
-  for (const bool orthographic : {false, true}) {
-    renderer::Camera camera = camera_above();
-    camera.orthographic = orthographic;
-    const std::vector<bool> seen = receivers_seen(tracer, receivers, camera);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const Vec3f p = receivers.positions[i];
-      const float across = std::hypot(p.x, p.z);
-      const bool in_sight = p.y > 0.2F || (p.y < -0.9F && across > 0.8F);
-      const bool hidden = (p.y > -0.9F && p.y < -0.1F) || (p.y < -0.9F && across < 0.45F);
-      EXPECT_TRUE(in_sight ? seen[i] : !hidden || !seen[i]) << p.x << " " << p.y << " " << p.z;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace chiaro::inverse

@@ -31,6 +31,9 @@ Receivers board() {
       }
     }
   }
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    receivers.samples.push_back({receivers.positions[i], receivers.normals[i]});
+  }
   return receivers;
 }
 
@@ -86,11 +89,30 @@ TEST(TargetFromValues, BringsALinearFieldToItsReceivers) {
   const TargetFromValues result = target_from_values(receivers, dense_values(40));
   EXPECT_EQ(result.not_placed, 0U);
   for (std::size_t i = 0; i < kUpper; ++i) {
-    const Vec3f expected = linear_field(receivers.positions[i]);
+    const Vec3f expected = linear_field(result.target.receivers.samples[i].position);
     // The mean that each is drawn to by a tenth lies up to a third of an edge inside the border.
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(result.target.illumination[i][c], expected[c], 0.08F) << i;
   }
-  EXPECT_NEAR(result.target.illumination[12][0], 3, 1e-3F);
+  EXPECT_NEAR(result.target.illumination[12][0], 3, 0.06F);
+}
+
+// The value of a receiver is that of the place where its sample lies, also where values cover a part of its triangles.
+TEST(TargetFromValues, SamplesReceiversWhereTheValuesAre) {
+  std::vector<SurfaceValue> values = dense_values(40);
+  std::erase_if(values, [](const SurfaceValue& value) { return value.position.x > 2.5F; });
+  const Receivers receivers = board();
+  const Target target = target_from_values(receivers, values).target;
+  for (std::size_t i = 0; i < kUpper; ++i) {
+    if (target.weight[i] == 0) continue;
+    const Vec3f at = target.receivers.samples[i].position, expected = linear_field(at);
+    EXPECT_LT(at.x, 2.55F);
+    EXPECT_NEAR(at.y, 0, 1e-4F);
+    EXPECT_GT(at.y, 0);
+    EXPECT_EQ(target.receivers.samples[i].normal, (Vec3f{0, 1, 0}));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(target.illumination[i][c], expected[c], 0.1F) << i;
+  }
+  EXPECT_GT(target.weight[13], 0);  // at x = 3, beyond them
+  EXPECT_EQ(target.weight[14], 0);
 }
 
 TEST(TargetFromValues, WeighsByWhatFallsToAReceiver) {
