@@ -35,6 +35,7 @@ constexpr int kFixedSamplesOfMany = 32;           // per receiver of the last re
 constexpr std::size_t kMany = 50000;              // … of so many at most
 constexpr double kExplained = 1.5;      // times the noise of the target, or less: more receivers hardly tell more
 constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood
+constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 constexpr double kOnSurface = 0.5;      // of a target's receivers must lie on the scene
@@ -185,16 +186,35 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   return joined(beside_surfaces, refined.lights);
 }
 
+struct RefittedLights {
+  LightEstimates lights;
+  double error = 0;
+};
+
 // Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
 // important ones, and robust weights would not see it.
-LightEstimates refitted_over_many(const JointSearch& search, LightEstimates lights, StageClock& clock) {
+RefittedLights refitted_over_many(const JointSearch& search, LightEstimates lights) {
   renderer::Lights placed;
   for (const LightEstimate& light : lights) placed.emplace_back(point_light(light));
-  if (placed.empty()) return lights;
+  if (placed.empty()) return {lights, 1};
   const PlacedFit fit = refit_over_many(search.problem, placed, search.options, search.control);
   for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
-  clock.finish("intensities_over_many", {{"relative_l2", fit.error}});
-  return lights;
+  return {lights, fit.error};
+}
+
+// Where no lights explain the target the important vertices may speak for a light that is none to all others: sets of
+// fewer lights are refitted as well.
+LightEstimates best_over_many(const JointSearch& search, const LightEstimates& lights,
+                              const std::vector<LightEstimates>& sets, StageClock& clock) {
+  RefittedLights best = refitted_over_many(search, lights);
+  const std::size_t fewest = search.options.exact_lights > 0 || lights.empty() ? lights.size() : 1;
+  for (std::size_t size = lights.size(); size-- > fewest;) {
+    if (size > sets.size() || sets[size - 1].empty()) continue;
+    RefittedLights fewer = refitted_over_many(search, sets[size - 1]);
+    if (fewer.error <= kWorthALight * best.error) best = std::move(fewer);
+  }
+  clock.finish("intensities_over_many", {{"lights", double(best.lights.size())}, {"relative_l2", best.error}});
+  return best.lights;
 }
 
 // Those of the number asked for, or no more than that.
@@ -267,8 +287,10 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const auto at_last = [&] {
     if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
     const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
-    if (far || ties_lights_together(search.problem))
-      return refitted_over_many(search, joined(beside_surfaces, polished.lights), clock);
+    if (far) return best_over_many(search, polished.lights, count.sets, clock);
+    if (ties_lights_together(search.problem)) {
+      return best_over_many(search, joined(beside_surfaces, polished.lights), {}, clock);
+    }
     return refined_over_many(search, polished.lights, beside_surfaces, clock);
   };
   const LightEstimates all = at_last();
