@@ -49,10 +49,12 @@ std::vector<TextRow> rows_of(const Figures& f, const std::string& place) {
           {"largest difference", fmt::format("{:.4g} at {}", f.max_difference, place)}};
 }
 
-JsonObject channels_of(const renderer::ImageComparison& c) {
+using Channels = std::array<renderer::ChannelComparison, 3>;
+
+JsonObject channels_of(const Channels& figures) {
   JsonObject channels;
   for (std::size_t i = 0; i < 3; ++i) {
-    const renderer::ChannelComparison& f = c.channels[i];
+    const renderer::ChannelComparison& f = figures[i];
     channels.emplace_back(std::string(1, "RGB"[i]), JsonObject{{"relative_l2", f.relative_l2},
                                                                {"rmse", f.rmse},
                                                                {"relative_mse", f.relative_mse},
@@ -67,7 +69,7 @@ JsonObject channels_of(const renderer::ImageComparison& c) {
 JsonObject summary_of(const FrameFigures& f) {
   JsonObject summary = summary_of(figures_of(f.image), {f.image.max_x, f.image.max_y});
   summary.emplace_back("not_finite", std::int64_t(f.image.not_finite));
-  summary.emplace_back("channels", channels_of(f.image));
+  summary.emplace_back("channels", channels_of(f.image.channels));
   if (f.flip) summary.emplace_back("flip", *f.flip);
   if (f.flip_hdr) summary.emplace_back("flip_hdr", *f.flip_hdr);
   return summary;
@@ -82,10 +84,10 @@ JsonObject summary_of(const NamedRegion& region, const FrameFigures& figures) {
 
 std::string text_of(const std::optional<double>& flip) { return flip ? fmt::format("{:.4g}", *flip) : "-"; }
 
-std::string channel_table(const renderer::ImageComparison& c) {
+std::string channel_table(const Channels& channels) {
   std::vector<Row> rows{{"channel", "relative L2", "RMSE", "PSNR", "largest"}};
   for (std::size_t i = 0; i < 3; ++i) {
-    const renderer::ChannelComparison& f = c.channels[i];
+    const renderer::ChannelComparison& f = channels[i];
     rows.push_back({std::string(1, "RGB"[i]), text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
                     fmt::format("{:.4g}", f.psnr), fmt::format("{:.4g}", f.max_difference)});
   }
@@ -100,6 +102,31 @@ std::string region_table(const FrameComparison& comparison) {
     rows.push_back({comparison.regions[i].name, text_of_percent(f.image.relative_l2),
                     fmt::format("{:.4g}", f.image.rmse), fmt::format("{:.4g}", f.image.psnr),
                     fmt::format("{:.4g}", f.image.max_difference), text_of(f.flip), text_of(f.flip_hdr)});
+  }
+  return "\n" + table(rows);
+}
+
+JsonList surfaces_of(const inverse::TargetComparison& comparison) {
+  JsonList surfaces;
+  for (const inverse::SurfaceComparison& f : comparison.surfaces) {
+    surfaces.emplace_back(JsonObject{{"name", f.name},
+                                     {"relative_l2", f.relative_l2},
+                                     {"rmse", f.rmse},
+                                     {"mean_a", f.mean_a},
+                                     {"mean_b", f.mean_b},
+                                     {"max_difference", f.max_difference}});
+  }
+  return surfaces;
+}
+
+// None of scenes of very many surfaces: --json has them.
+std::string surface_table(const inverse::TargetComparison& comparison) {
+  constexpr std::size_t kMostRows = 12;
+  if (comparison.surfaces.size() < 2 || comparison.surfaces.size() > kMostRows) return "";
+  std::vector<Row> rows{{"surface", "relative L2", "RMSE", "largest"}};
+  for (const inverse::SurfaceComparison& f : comparison.surfaces) {
+    rows.push_back({one_line(f.name), text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
+                    fmt::format("{:.4g}", f.max_difference)});
   }
   return "\n" + table(rows);
 }
@@ -130,17 +157,20 @@ std::string comparison_text(const FrameComparison& comparison) {
     rows.emplace_back("HDR-FLIP", fmt::format("{} over {} exposures, {:.3g} to {:.3g} EV",
                                               text_of(comparison.whole.flip_hdr), hdr.exposures, hdr.start, hdr.stop));
   }
-  return aligned_rows(rows) + "\n" + channel_table(image) + region_table(comparison);
+  return aligned_rows(rows) + "\n" + channel_table(image.channels) + region_table(comparison);
 }
 
 JsonObject comparison_summary(const inverse::TargetComparison& comparison, Vec3f place) {
   JsonObject summary = summary_of(figures_of(comparison), {place.x, place.y, place.z});
   summary.emplace_back("max_receiver", comparison.max_at);
+  summary.emplace_back("channels", channels_of(comparison.channels));
+  summary.emplace_back("surfaces", surfaces_of(comparison));
   return summary;
 }
 
 std::string comparison_text(const inverse::TargetComparison& comparison, Vec3f place) {
-  return aligned_rows(rows_of(figures_of(comparison), text_of_vector(place) + " m"));
+  return aligned_rows(rows_of(figures_of(comparison), text_of_vector(place) + " m")) + "\n" +
+         channel_table(comparison.channels) + surface_table(comparison);
 }
 
 }  // namespace chiaro::cli

@@ -31,30 +31,70 @@ void check_same_receivers(const Receivers& a, const Receivers& b) {
   }
 }
 
-// Receivers of weight 0 do not take part.
-TargetComparison figures(const Target& a, const Target& b) {
-  renderer::DifferenceSums sums;
-  TargetComparison result;
-  double mean_a[3] = {}, mean_b[3] = {}, total_weight = 0;
-  for (std::size_t i = 0; i < a.receivers.size(); ++i) {
-    if (b.weight[i] == 0) continue;
-    total_weight += b.weight[i];
-    for (int c = 0; c < 3; ++c) {
-      const double va = a.illumination[i][c], vb = b.illumination[i][c];
-      if (sums.add(va, vb, b.weight[i])) result.max_at = i;
-      mean_a[c] += b.weight[i] * va;
-      mean_b[c] += b.weight[i] * vb;
+// Sums over receivers; those of weight 0 do not take part.
+struct TargetSums {
+  renderer::DifferenceSums all;
+  std::array<renderer::DifferenceSums, 3> channels;
+  std::array<double, 3> a{}, b{};
+  double weight = 0;
+  std::size_t max_at = 0;
+
+  Vec3f mean(const std::array<double, 3>& sum) const {
+    return {float(sum[0] / weight), float(sum[1] / weight), float(sum[2] / weight)};
+  }
+};
+
+TargetSums sums_of(const Target& a, const Target& b, std::size_t first, std::size_t count) {
+  TargetSums sums;
+  for (std::size_t i = first; i < first + count; ++i) {
+    const double weight = b.weight[i];
+    if (weight == 0) continue;
+    sums.weight += weight;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double va = a.illumination[i][int(c)], vb = b.illumination[i][int(c)];
+      if (sums.all.add(va, vb, weight)) sums.max_at = i;
+      sums.channels[c].add(va, vb, weight);
+      sums.a[c] += weight * va;
+      sums.b[c] += weight * vb;
     }
   }
-  if (total_weight == 0) throw Error({"", "", "every weight of the reference is 0", "a weight > 0 somewhere"});
-  for (int c = 0; c < 3; ++c) {
-    result.mean_a[c] = float(mean_a[c] / total_weight);
-    result.mean_b[c] = float(mean_b[c] / total_weight);
+  return sums;
+}
+
+std::array<renderer::ChannelComparison, 3> channels_of(const TargetSums& sums) {
+  std::array<renderer::ChannelComparison, 3> channels;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const renderer::DifferenceSums& s = sums.channels[c];
+    channels[c] = {s.relative_l2(),         s.rmse(),        s.relative_mse(), s.psnr(), sums.a[c] / sums.weight,
+                   sums.b[c] / sums.weight, s.max_difference};
   }
-  result.rmse = sums.rmse();
-  result.relative_mse = sums.relative_mse();
-  result.psnr = sums.psnr();
-  result.max_difference = sums.max_difference;
+  return channels;
+}
+
+std::vector<SurfaceComparison> surfaces_of(const Target& a, const Target& b) {
+  std::vector<SurfaceComparison> surfaces;
+  for (const Receivers::Part& part : b.receivers.parts) {
+    const TargetSums sums = sums_of(a, b, part.first_receiver, part.receiver_count);
+    if (sums.weight == 0) continue;
+    surfaces.push_back({part.name, sums.all.relative_l2(), sums.all.rmse(), sums.all.max_difference, sums.mean(sums.a),
+                        sums.mean(sums.b)});
+  }
+  return surfaces;
+}
+
+TargetComparison figures(const Target& a, const Target& b) {
+  const TargetSums sums = sums_of(a, b, 0, a.receivers.size());
+  if (sums.weight == 0) throw Error({"", "", "every weight of the reference is 0", "a weight > 0 somewhere"});
+  TargetComparison result;
+  result.mean_a = sums.mean(sums.a);
+  result.mean_b = sums.mean(sums.b);
+  result.rmse = sums.all.rmse();
+  result.relative_mse = sums.all.relative_mse();
+  result.psnr = sums.all.psnr();
+  result.max_difference = sums.all.max_difference;
+  result.max_at = sums.max_at;
+  result.channels = channels_of(sums);
+  result.surfaces = surfaces_of(a, b);
   return result;
 }
 

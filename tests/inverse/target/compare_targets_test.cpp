@@ -64,6 +64,25 @@ TEST(CompareTargets, ReceiversCountAsTheReferenceWeighsThem) {
   EXPECT_EQ(found.mean_a, (Vec3f{1.5F, 1, 1}));
 }
 
+TEST(CompareTargets, ChannelsAndSurfacesHaveFiguresOfTheirOwn) {
+  Target a = make_target(four(), {1, 1, 1});
+  a.receivers.parts = {{"near", 0, 2, 0, 0}, {"far", 2, 2, 0, 0}};
+  Target b = a;
+  a.illumination[0] = {3, 1, 1};
+  a.illumination[3] = {1, 1, 2};
+  b.weight = {1, 1, 0, 0};
+  const TargetComparison found = compare_targets(a, b);
+  EXPECT_DOUBLE_EQ(found.channels[0].relative_l2, std::sqrt(4.0 / 2.0));
+  EXPECT_DOUBLE_EQ(found.channels[0].mean_a, 2);
+  EXPECT_EQ(found.channels[1].rmse, 0);
+  EXPECT_EQ(found.channels[2].max_difference, 0);
+  ASSERT_EQ(found.surfaces.size(), 1U) << "of the other nothing is wanted";
+  EXPECT_EQ(found.surfaces[0].name, "near");
+  EXPECT_DOUBLE_EQ(found.surfaces[0].relative_l2, std::sqrt(4.0 / 6.0));
+  EXPECT_EQ(found.surfaces[0].mean_a, (Vec3f{2, 1, 1}));
+  EXPECT_EQ(found.surfaces[0].max_difference, 2);
+}
+
 TEST(CompareTargets, EqualTargetsDifferByNothing) {
   const Target target = make_target(four(), {0.1F, 2, 3});
   const TargetComparison found = compare_targets(target, target);
