@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -34,6 +35,14 @@ void try_to_make_file(const std::filesystem::path& folder, const std::filesystem
   ::unlink(probe.c_str());
 }
 
+// Of the shell: `> LIGHTS.json` beside `-o LIGHTS.glb` would lose one of the two.
+bool is_standard_output(const std::filesystem::path& path) {
+  struct stat output {
+  }, file{};
+  if (fstat(STDOUT_FILENO, &output) != 0 || !S_ISREG(output.st_mode) || stat(path.c_str(), &file) != 0) return false;
+  return output.st_dev == file.st_dev && output.st_ino == file.st_ino;
+}
+
 }  // namespace
 
 bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
@@ -54,6 +63,9 @@ void require_writable(const std::filesystem::path& path) {
   }
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error({path.string(), "", "is a folder", "the name of a file"});
+  }
+  if (is_standard_output(path)) {
+    throw Error({path.string(), "", "is where standard output goes", "another file for the summary"});
   }
   try_to_make_file(folder, path);
 }

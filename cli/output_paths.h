@@ -11,7 +11,7 @@ void require_extension(const std::filesystem::path& path, const std::vector<std:
 
 bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions);
 
-// Error where a file could not be made at `path`: asked before the long work starts, not after.
+// Error where a file could not be made at `path`, or standard output is that file: asked before the long work starts.
 void require_writable(const std::filesystem::path& path);
 
 // Error where `folder` exists and is something else than a folder.
