@@ -5,6 +5,7 @@
 #include "cli/html.h"
 #include "cli/run_page.h"
 #include "renderer/core/color_temperature.h"
+#include "renderer/image/srgb_curve.h"
 #include "renderer/scene/luminous_flux.h"
 
 namespace chiaro::cli {
@@ -52,9 +53,7 @@ std::string swatch(Vec3f color) {
   const float most = max_component(color);
   std::array<int, 3> bytes{};
   for (int c = 0; c < 3 && most > 0; ++c) {
-    const float v = std::max(0.0F, color[c] / most);
-    const float encoded = v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F;
-    bytes[std::size_t(c)] = int(std::lround(255 * encoded));
+    bytes[std::size_t(c)] = int(std::lround(255 * renderer::srgb_from_linear(std::max(0.0F, color[c] / most))));
   }
   return fmt::format(
       "<svg class=\"swatch\" viewBox=\"0 0 2 2\"><circle cx=\"1\" cy=\"1\" r=\"1\" "

@@ -91,37 +91,41 @@ std::vector<FoundLight> lit(const renderer::Lights& lights, const Observations& 
 }
 
 struct ManyObservations {
-  std::vector<Column> columns;  // of each light, of 1 candela (or lux)
+  std::vector<renderer::SurfaceSample> samples;
   Observations observations;
 };
 
-ManyObservations observe_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control) {
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const auto samples = samples_at(problem.target, draw.chosen);
-  const int fixed_samples = verification_samples(options, samples.size());
-  ManyObservations many{
-      unity_columns(problem, lights, samples, options, control),
-      observe_target(problem.target, draw, fixed_illumination(problem, samples, fixed_samples, options, control))};
-  many.observations = weighted_by_objective(many.observations, options.objective);
+  ManyObservations many{samples_at(problem.target, draw.chosen), {}};
+  const int fixed_samples = verification_samples(options, many.samples.size());
+  const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
+  many.observations = weighted_by_objective(observe_target(problem.target, draw, fixed), options.objective);
   many.observations.rules = problem.intensities;
   return many;
 }
 
 }  // namespace
 
-PlacedFit refit_over_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
-                          const renderer::Control& control) {
-  const ManyObservations many = observe_many(problem, lights, options, control);
-  const IntensityFit fit = fit_intensities(many.observations, many.columns);
-  return {fit.intensity, error_of(many.observations, many.columns, fit.intensity)};
+std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
+                                       const SolveOptions& options, const renderer::Control& control) {
+  const auto [samples, observations] = observe_many(problem, options, control);
+  std::vector<PlacedFit> fits;
+  for (const renderer::Lights& lights : sets) {
+    const std::vector<Column> columns = unity_columns(problem, lights, samples, options, control);
+    const IntensityFit fit = fit_intensities(observations, columns);
+    fits.push_back({fit.intensity, error_of(observations, columns, fit.intensity)});
+  }
+  return fits;
 }
 
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock;
   SolveResult result;
   check_lights_in_place(problem);
-  const auto [columns, observations] = observe_many(problem, problem.lights_in_place, options, control);
+  const auto [samples, observations] = observe_many(problem, options, control);
+  const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, options, control);
   result.cache_seconds = clock.finish("traced_lights", {{"lights", double(columns.size())}});
   const IntensityFit fit = fit_intensities(observations, columns);
   result.relative_l2_cached = error_of(observations, columns, fit.intensity);

@@ -9,9 +9,9 @@ struct PlacedFit {
   std::vector<Eigen::Array3d> intensity;
   double error = 0;  // (3.6) over these receivers
 };
-// By what each brings by path tracing, whatever its intensity is now.
-PlacedFit refit_over_many(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
-                          const renderer::Control& control);
+// Of each set, by what each of its lights brings by path tracing, whatever its intensity is now.
+std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
+                                       const SolveOptions& options, const renderer::Control& control);
 
 // The intensities of lights that stay where they are, of any kind that shines from somewhere, by least squares over
 // what each brings by path tracing: no bake is needed. Error where none of them reaches the painted surfaces.

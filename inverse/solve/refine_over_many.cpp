@@ -12,6 +12,7 @@
 
 #include <Eigen/LU>
 
+#include "inverse/numerics/median.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -63,12 +64,6 @@ TracedIndirect trace_indirect(const ManyReceivers& many, const LightEstimates& l
   return indirect;
 }
 
-double median(Eigen::VectorXd values) {
-  const auto middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
-}
-
 Column residual_of(const Observations& observations, const std::vector<ColumnWithGradient>& direct,
                    const std::vector<Column>& indirect, const LightEstimates& lights) {
   Column residual = -observations.wanted;
@@ -82,7 +77,7 @@ Column residual_of(const Observations& observations, const std::vector<ColumnWit
 Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Column& residual, double outlier) {
   const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
   const Eigen::ArrayXd relative = residual.rowwise().norm().array() / brightness.max(kDark * brightness.mean());
-  const double scale = std::max(kLeastScale, outlier * median(relative));
+  const double scale = std::max(kLeastScale, outlier * numerics::median({relative.begin(), relative.end()}));
   return observations.sqrt_weight.array() / (1 + (relative / scale).square());
 }
 

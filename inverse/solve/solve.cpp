@@ -186,35 +186,34 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   return joined(beside_surfaces, refined.lights);
 }
 
-struct RefittedLights {
-  LightEstimates lights;
-  double error = 0;
-};
-
-// Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
-// important ones, and robust weights would not see it.
-RefittedLights refitted_over_many(const JointSearch& search, LightEstimates lights) {
+renderer::Lights point_lights(const LightEstimates& lights) {
   renderer::Lights placed;
   for (const LightEstimate& light : lights) placed.emplace_back(point_light(light));
-  if (placed.empty()) return {lights, 1};
-  const PlacedFit fit = refit_over_many(search.problem, placed, search.options, search.control);
-  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = fit.intensity[j];
-  return {lights, fit.error};
+  return placed;
 }
 
-// Where no lights explain the target the important vertices may speak for a light that is none to all others: sets of
-// fewer lights are refitted as well.
+// Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
+// important ones, and robust weights would not see it. Where no lights explain the target those may also speak for a
+// light that is none to all others: sets of fewer lights are refitted as well.
 LightEstimates best_over_many(const JointSearch& search, const LightEstimates& lights,
                               const std::vector<LightEstimates>& sets, StageClock& clock) {
-  RefittedLights best = refitted_over_many(search, lights);
-  const std::size_t fewest = search.options.exact_lights > 0 || lights.empty() ? lights.size() : 1;
-  for (std::size_t size = lights.size(); size-- > fewest;) {
-    if (size > sets.size() || sets[size - 1].empty()) continue;
-    RefittedLights fewer = refitted_over_many(search, sets[size - 1]);
-    if (fewer.error <= kWorthALight * best.error) best = std::move(fewer);
+  if (lights.empty()) return lights;
+  std::vector<LightEstimates> candidates{lights};
+  const std::size_t fewest = search.options.exact_lights > 0 ? lights.size() : 1;
+  for (std::size_t size = std::min(lights.size() - 1, sets.size()); size >= fewest; --size) {
+    if (!sets[size - 1].empty()) candidates.push_back(sets[size - 1]);
   }
-  clock.finish("intensities_over_many", {{"lights", double(best.lights.size())}, {"relative_l2", best.error}});
-  return best.lights;
+  std::vector<renderer::Lights> placed;
+  for (const LightEstimates& candidate : candidates) placed.push_back(point_lights(candidate));
+  const std::vector<PlacedFit> fits = refit_over_many(search.problem, placed, search.options, search.control);
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < fits.size(); ++k) {
+    if (fits[k].error <= kWorthALight * fits[best].error) best = k;
+  }
+  LightEstimates refitted = candidates[best];
+  for (std::size_t j = 0; j < refitted.size(); ++j) refitted[j].intensity = fits[best].intensity[j];
+  clock.finish("intensities_over_many", {{"lights", double(refitted.size())}, {"relative_l2", fits[best].error}});
+  return refitted;
 }
 
 // Those of the number asked for, or no more than that.

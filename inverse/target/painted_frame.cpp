@@ -99,9 +99,10 @@ class FrameReader {
   // Average over the pixel. None where it shows more than one surface.
   std::optional<Vec3f> albedo_of(int x, int y, const SurfacePoint& middle) const {
     const float size = pixel_size(x, y, middle.position);
-    Vec3f sum;
+    Vec3f sum = hemispherical_albedo(middle);
     for (int row = 0; row < kGrid; ++row) {
       for (int column = 0; column < kGrid; ++column) {
+        if (row == kGrid / 2 && column == kGrid / 2) continue;
         const auto point = seen(tracer_, ray(x, y, column, row));
         if (!point || differs(middle, *point, size)) return std::nullopt;
         sum += hemispherical_albedo(*point);

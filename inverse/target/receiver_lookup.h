@@ -3,8 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "inverse/transport/box_tree.h"
-#include "inverse/transport/receivers.h"
+#include "inverse/target/receiver_surface.h"
 
 namespace chiaro::inverse {
 
@@ -24,8 +23,7 @@ class ReceiverLookup {
   std::optional<ReceiverWeights> find(Vec3f position, Vec3f normal) const;
 
  private:
-  const Receivers& receivers_;
-  BoxTree surface_;
+  ReceiverSurface surface_;
   double reach_;  // metres
 };
 

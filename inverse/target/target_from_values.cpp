@@ -6,6 +6,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
+#include "inverse/numerics/median.h"
 #include "inverse/target/receiver_lookup.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/error.h"
@@ -141,13 +142,6 @@ Eigen::VectorXd scatter_around(const std::vector<PlacedValue>& values, const Sum
   return (sums.weight.array() > 0).select(squares.array() / sums.weight.array(), 0);
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Root mean square over the channels. The values' noise is taken to be relative, and the median of their scatter; what
 // is beyond it, as across the edge of a shadow, no interpolation shows: it does not average out.
 std::vector<float> standard_errors(const std::vector<PlacedValue>& values, const Sums& sums, const Colors& fitted) {
@@ -157,7 +151,7 @@ std::vector<float> standard_errors(const std::vector<PlacedValue>& values, const
   for (Index i = 0; i < light.size(); ++i) {
     if (sums.weight[i] > 0 && light[i] > 0) relative.push_back(scatter[i] / light[i]);
   }
-  const double noise = median(std::move(relative));
+  const double noise = numerics::median(std::move(relative));
   std::vector<float> errors(std::size_t(sums.weight.size()), 0);
   for (Index i = 0; i < sums.weight.size(); ++i) {
     if (!(sums.weight[i] > 0)) continue;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "inverse/numerics/median.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/gather_operator.h"
 #include "inverse/transport/light_response.h"
@@ -120,13 +121,6 @@ std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
   return pointers;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void check_interruption(const renderer::Control& control) {
   if (control.stop_requested()) throw renderer::Interruption();
 }
@@ -140,7 +134,7 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
   while (lights <= double(kMostGridLights)) {
     check_interruption(control);
     LightGrid grid = make_light_grid(tracer, {.region = options.region, .parts = options.parts, .lights = lights});
-    const double error = median(test.errors(grid, pointers_to(test.rows_of(grid.positions)), positions));
+    const double error = numerics::median(test.errors(grid, pointers_to(test.rows_of(grid.positions)), positions));
     if (error <= options.error) return grid;
     least = std::min(least, error);
     const double step = std::clamp(std::pow(options.error / error, 1 / kPower), kLeastStep, kMostStep);
@@ -220,7 +214,7 @@ class Refinement {
       if (place[c]) tested.push_back(c), positions.push_back(*place[c]);
     }
     const auto exact = test_.exact(std::move(positions));
-    if (!bright_) bright_ = kDarkest * median(exact.norm);
+    if (!bright_) bright_ = kDarkest * numerics::median(exact.norm);
     const std::vector<double> errors = test_.errors(grid_, rows(), exact);
     std::vector<std::size_t> order;  // of the tests
     for (std::size_t k = 0; k < errors.size(); ++k) {
