@@ -76,7 +76,7 @@ int run_solve(SolveCommand options) {
   inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
   if (!options.from.empty()) solving.earlier = inverse::load_error_curve(options.from);
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
-  save_found_lights(options.scene, result, options.output, options.choices.constraints.keep_lights);
+  save_found_lights(options.scene, result, options.output, output_scene_options(options.choices));
   print_summary(session, options, wanted, result);
   return kDone;
 }

@@ -18,6 +18,9 @@ void add_scene_options(CLI::App& command, renderer::LoadOptions& options) {
              {"--animation-time", "SECONDS", "The scene as it is then (default: as its nodes stand, nothing animated)"},
              options.animation.seconds);
   command.get_option("--animation")->needs("--animation-time");
+  command.add_flag_callback(
+      "--allow-external", [&options] { options.external = renderer::ExternalFiles::kAnywhere; },
+      "Let the scene open files outside its folder");
 }
 
 }  // namespace chiaro::cli

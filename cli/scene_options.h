@@ -8,7 +8,7 @@ class App;
 
 namespace chiaro::cli {
 
-// What every command that loads a scene has: --variant, --animation, --animation-time.
+// What every command that loads a scene has: --variant, --animation, --animation-time, --allow-external.
 void add_scene_options(CLI::App& command, renderer::LoadOptions& options);
 
 }  // namespace chiaro::cli

@@ -9,7 +9,6 @@
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
 #include "renderer/io/light_file.h"
-#include "renderer/io/save_gltf.h"
 
 namespace chiaro::cli {
 namespace {
@@ -128,11 +127,15 @@ void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices,
       fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path, own));
 }
 
+renderer::AddLightsOptions output_scene_options(const SolveChoices& choices) {
+  return {.keep_lights = choices.constraints.keep_lights, .external = choices.transport.load.external};
+}
+
 void save_found_lights(const std::string& scene, const inverse::SolveResult& result, const std::string& output,
-                       bool keep_lights) {
+                       const renderer::AddLightsOptions& options) {
   renderer::Lights lights;
   for (const inverse::FoundLight& found : result.lights) lights.emplace_back(found.light);
-  renderer::save_gltf_with_lights(scene, lights, output, {.keep_lights = keep_lights});
+  renderer::save_gltf_with_lights(scene, lights, output, options);
   renderer::save_lights(lights, beside(output, ".json"));
 }
 

@@ -9,6 +9,7 @@
 #include "cli/target_options.h"
 #include "cli/transport_options.h"
 #include "inverse/solve/solve.h"
+#include "renderer/io/save_gltf.h"
 
 namespace chiaro::cli {
 
@@ -35,9 +36,12 @@ inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOpt
 // Passes on what a user should know of the result before believing it.
 void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session);
 
+// How the scene with the lights found is made of the scene.
+renderer::AddLightsOptions output_scene_options(const SolveChoices& choices);
+
 // LIGHTS.glb, the scene with the lights found, and LIGHTS.json beside it, the lights alone.
 void save_found_lights(const std::string& scene, const inverse::SolveResult& result, const std::string& output,
-                       bool keep_lights);
+                       const renderer::AddLightsOptions& options);
 
 JsonObject solve_summary(const inverse::SolveResult& result);
 std::string solve_text(const inverse::SolveResult& result);

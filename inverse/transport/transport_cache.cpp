@@ -10,6 +10,7 @@
 
 #include "inverse/transport/number_ranges.h"
 #include "renderer/core/error.h"
+#include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
 
 namespace chiaro::inverse {
@@ -311,6 +312,14 @@ void require_whole(TransportCacheReader& reader, const std::string& name) {
                "a whole one: join the parts with `chiaro merge`"});
 }
 
+void require_room_for_entries(const TransportCache& cache, const std::filesystem::path& path) {
+  constexpr std::size_t kEntryBytes = 8;
+  const std::size_t entries = cache.grid.positions.size() * cache.receiver_count;
+  if (renderer::may_hold(std::filesystem::file_size(path), kEntryBytes * entries)) return;
+  throw Error({path.string(), "header", fmt::format("has more entries ({}) than such a file can hold", entries),
+               "a whole file"});
+}
+
 }  // namespace
 
 float indirect_scale_for(const Box3f& bounds) {
@@ -404,6 +413,7 @@ TransportCache load_transport_cache(const std::filesystem::path& path,
     receivers = all;
   }
   cache.receiver_count = receivers->size();
+  require_room_for_entries(cache, path);
   cache.visibility.resize(cache.grid.positions.size() * receivers->size());
   cache.indirect.resize(cache.visibility.size());
   if (renderer::ExrTileReader::is_tiled(path)) {

@@ -9,6 +9,7 @@
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
 #include "renderer/image/memory_file.h"
+#include "renderer/image/read_through_library.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -40,12 +41,13 @@ std::string reason(const std::string& text) {
   return line.empty() ? "the decoder gives no reason" : line;
 }
 
-std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, const std::string& label) {
+std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, std::size_t encoded_bytes, const std::string& label) {
   const OIIO::ImageSpec& spec = input.spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1 ||
       std::int64_t(spec.width) * spec.height > kMaxTexels / std::max(1, spec.nchannels / 4)) {
     fail(label, fmt::format("has {} x {} pixels with {} channels", spec.width, spec.height, spec.nchannels));
   }
+  if (!may_hold(encoded_bytes, spec.image_bytes(true))) fail(label, "has more pixels than so few bytes can hold");
   std::vector<std::uint8_t> texels(std::size_t(spec.width) * spec.height * spec.nchannels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data())) {
     fail(label, fmt::format("cannot be decoded: {}", reason(input.geterror())));
@@ -66,8 +68,8 @@ std::vector<std::uint8_t> rgba_of(const std::vector<std::uint8_t>& texels, int c
   return rgba;
 }
 
-Texture decoded_texture(OIIO::ImageInput& input, const std::string& label) {
-  std::vector<std::uint8_t> texels = read_texels(input, label);
+Texture decoded_texture(OIIO::ImageInput& input, std::size_t encoded_bytes, const std::string& label) {
+  std::vector<std::uint8_t> texels = read_texels(input, encoded_bytes, label);
   const OIIO::ImageSpec& spec = input.spec();
   Texture texture;
   texture.name = label;
@@ -85,15 +87,10 @@ Texture decode_avif(std::string_view encoded, const OIIO::ImageSpec& config, con
   if (!input) fail(label, "cannot be decoded: this OpenImageIO has no AVIF");
   if (!input->open(file.path(), spec, config))
     fail(label, fmt::format("cannot be decoded: {}", reason(input->geterror())));
-  return decoded_texture(*input, label);
+  return decoded_texture(*input, encoded.size(), label);
 }
 
-}  // namespace
-
-Texture decode_texture(std::string_view encoded, const std::string& label) {
-  const std::string name = file_name_for(encoded);
-  if (name.empty()) fail(label, "is in a format that is not read here");
-  if (const auto damage = find_damage(encoded)) fail(label, *damage);
+Texture decode(std::string_view encoded, const std::string& name, const std::string& label) {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   if (name == kAvifName) return decode_avif(encoded, config, label);
@@ -103,7 +100,16 @@ Texture decode_texture(std::string_view encoded, const std::string& label) {
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::open(name, &config, proxy);
   if (!input) fail(label, fmt::format("cannot be decoded: {}", reason(OIIO::geterror())));
-  return decoded_texture(*input, label);
+  return decoded_texture(*input, encoded.size(), label);
+}
+
+}  // namespace
+
+Texture decode_texture(std::string_view encoded, const std::string& label) {
+  const std::string name = file_name_for(encoded);
+  if (name.empty()) fail(label, "is in a format that is not read here");
+  if (const auto damage = find_damage(encoded)) fail(label, *damage);
+  return read_through_library(label, [&] { return decode(encoded, name, label); });
 }
 
 }  // namespace chiaro::renderer

@@ -82,4 +82,9 @@ std::optional<std::string> find_damage(std::string_view encoded) {
   return std::nullopt;
 }
 
+bool may_hold(std::uintmax_t file_bytes, std::uintmax_t pixel_bytes) {
+  constexpr std::uintmax_t kAlways = std::uintmax_t{1} << 28, kTightest = 10'000;
+  return pixel_bytes <= kAlways || pixel_bytes / kTightest <= file_bytes;
+}
+
 }  // namespace chiaro::renderer

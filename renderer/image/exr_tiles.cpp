@@ -25,13 +25,14 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
+#include "renderer/image/exr_header.h"
 
 namespace chiaro::renderer {
 namespace {
 
 // zlib's fastest: the tenth that it leaves is not worth twice the time.
 constexpr int kZipLevel = 1;
-constexpr int kMostPixelsAcross = 1 << 30;
+constexpr int kMostPixelsAcross = 1 << 30, kMostPixelsOfTile = 1 << 24;
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
   throw Error({path.string(), "", "cannot be written: " + reason, ""});
@@ -188,6 +189,7 @@ bool ExrTileReader::is_tiled(const std::filesystem::path& path) {
 
 ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
   Imf::setGlobalThreadCount(thread_count());
+  if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole file"});
   try {
     file_ = std::make_unique<File>(path);
   } catch (const std::exception& error) {
@@ -197,7 +199,8 @@ ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
   const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
   bool sensible = display.min == Imath::V2i(0, 0) && data.min.y == 0 && data.max.y == display.max.y &&
                   data.min.x >= 0 && data.max.x <= display.max.x && display.max.x < kMostPixelsAcross &&
-                  header.tileDescription().mode == Imf::ONE_LEVEL;
+                  header.tileDescription().mode == Imf::ONE_LEVEL &&
+                  std::int64_t(header.tileDescription().xSize) * header.tileDescription().ySize <= kMostPixelsOfTile;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
     sensible = sensible && it.channel().type == Imf::HALF && it.channel().xSampling == 1 && it.channel().ySampling == 1;
     shape_.channels.emplace_back(it.name());

@@ -14,6 +14,8 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/image/encoded_image.h"
+#include "renderer/image/exr_header.h"
+#include "renderer/image/read_through_library.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -74,6 +76,7 @@ std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
   if (has_extension(path, {".png", ".jpg", ".jpeg"})) {
     if (const auto damage = find_damage(read_file(path))) throw Error({path.string(), "", *damage, "a whole image"});
   }
+  if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole image"});
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   auto input = OIIO::ImageInput::open(path.string(), &config);
@@ -177,13 +180,12 @@ void write(const Image& image, const std::filesystem::path& aside, const OIIO::I
   }
 }
 
-}  // namespace
-
-ImageFile load_image_header(const std::filesystem::path& path) { return header_of(*open(path), path); }
-
-ImageFile load_image(const std::filesystem::path& path) {
+ImageFile read_image(const std::filesystem::path& path) {
   const auto input = open(path);
   ImageFile file = header_of(*input, path);
+  if (!may_hold(std::filesystem::file_size(path), input->spec().image_bytes(true))) {
+    throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
+  }
   Image& image = file.image;
   image = make_image(image.width, image.height, std::move(image.channel_names));
   if (!input->read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) {
@@ -191,6 +193,16 @@ ImageFile load_image(const std::filesystem::path& path) {
         {path.string(), "pixels", fmt::format("cannot be read: {}", first_line(input->geterror())), "a whole file"});
   }
   return file;
+}
+
+}  // namespace
+
+ImageFile load_image_header(const std::filesystem::path& path) {
+  return read_through_library(path.string(), [&] { return header_of(*open(path), path); });
+}
+
+ImageFile load_image(const std::filesystem::path& path) {
+  return read_through_library(path.string(), [&] { return read_image(path); });
 }
 
 void save_image(const Image& image, const std::filesystem::path& path, PixelType type, const Attributes& attributes) {

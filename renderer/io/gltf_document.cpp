@@ -28,12 +28,15 @@ std::shared_ptr<const tinygltf::Model> parse(const std::string& structure, const
   return model;
 }
 
+UriBase base_of(const GltfDocument& document) { return {document.path, document.external}; }
+
 // A buffer without data is refused where it is read.
 std::string load_buffer(GltfDocument& document, std::size_t index) {
   const GltfBufferSource& source = document.json.buffers[index];
   const std::string place = fmt::format("buffers[{}]", index);
   if (!source.uri && (index > 0 || document.binary.empty())) return "";
-  std::string bytes = source.uri ? read_uri(*source.uri, document.path, place + ".uri") : std::move(document.binary);
+  std::string bytes =
+      source.uri ? read_uri(*source.uri, base_of(document), place + ".uri") : std::move(document.binary);
   if (bytes.size() < source.byte_length) {
     fail(document, place, fmt::format("has {} bytes", bytes.size()), fmt::format("byteLength, {}", source.byte_length));
   }
@@ -48,10 +51,11 @@ void fail(const GltfDocument& document, const std::string& place, const std::str
   throw Error({document.path.string(), place, problem, expected});
 }
 
-GltfDocument open_gltf(const std::filesystem::path& path) {
+GltfDocument open_gltf(const std::filesystem::path& path, ExternalFiles external) {
   GltfContainer container = read_gltf_container(path);
   GltfDocument document;
   document.path = path;
+  document.external = external;
   document.json = check_gltf_json(container.json, path);
   check_extensions(document);
   document.model = parse(document.json.structure, path);
@@ -88,7 +92,7 @@ std::string_view buffer_view_bytes(const GltfDocument& document, int buffer_view
 std::string image_bytes(const GltfDocument& document, int image) {
   const GltfImageSource& source = document.json.images[image];
   const std::string place = fmt::format("images[{}]", image);
-  if (source.uri) return read_uri(*source.uri, document.path, place + ".uri");
+  if (source.uri) return read_uri(*source.uri, base_of(document), place + ".uri");
   if (source.buffer_view < 0) fail(document, place, "has neither a uri nor a bufferView");
   return std::string(buffer_view_bytes(document, source.buffer_view));
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "renderer/core/external_files.h"
 #include "renderer/io/gltf_json.h"
 
 namespace tinygltf {
@@ -18,6 +19,7 @@ namespace chiaro::renderer {
 
 struct GltfDocument {
   std::filesystem::path path;
+  ExternalFiles external = ExternalFiles::kInFolder;
   std::shared_ptr<const tinygltf::Model> model;  // without buffers, images, animations, skins: see `json`
   GltfJson json;
   std::string binary;                            // the BIN chunk of a GLB
@@ -28,7 +30,7 @@ struct GltfDocument {
 };
 
 // The structure alone. Error as check_gltf_json, and for an extension under extensionsRequired that is not read here.
-GltfDocument open_gltf(const std::filesystem::path& path);
+GltfDocument open_gltf(const std::filesystem::path& path, ExternalFiles external = ExternalFiles::kInFolder);
 
 // Brings in the buffers and what is compressed in them. Error for missing files, for buffers shorter than they say, and
 // for compressed data that are damaged.

@@ -19,7 +19,7 @@ bool is_external(const ordered_json& object) {
 }
 
 std::string bytes_of(const ordered_json& object, const GltfEmbedding& embedding, const std::string& place) {
-  return read_uri(object["uri"].get_ref<const std::string&>(), embedding.gltf, place + ".uri");
+  return read_uri(object["uri"].get_ref<const std::string&>(), embedding.base, place + ".uri");
 }
 
 std::string mime_type_of(const ordered_json& image, const std::string& bytes) {
@@ -35,8 +35,8 @@ std::string mime_type_of(const ordered_json& image, const std::string& bytes) {
 void trim(std::string& bytes, const ordered_json& buffer, std::size_t index, const GltfEmbedding& embedding) {
   const std::size_t length = buffer["byteLength"].get<std::size_t>();
   if (bytes.size() < length) {
-    throw Error({embedding.gltf.string(), fmt::format("buffers[{}]", index), fmt::format("has {} bytes", bytes.size()),
-                 fmt::format("byteLength, {}", length)});
+    throw Error({embedding.base.gltf.string(), fmt::format("buffers[{}]", index),
+                 fmt::format("has {} bytes", bytes.size()), fmt::format("byteLength, {}", length)});
   }
   bytes.resize(length);
 }

@@ -5,11 +5,13 @@
 #include <optional>
 #include <string>
 
+#include "renderer/io/gltf_uri.h"
+
 namespace chiaro::renderer {
 
 struct GltfEmbedding {
-  std::filesystem::path gltf;  // external files are relative to this
-  bool as_text = false;        // all data as data URIs; else buffer 0 and external images go to the BIN chunk
+  UriBase base;          // of external files
+  bool as_text = false;  // all data as data URIs; else buffer 0 and external images go to the BIN chunk
 };
 
 // The JSON with every external buffer and image embedded, and the BIN chunk that belongs to it. Buffers keep their

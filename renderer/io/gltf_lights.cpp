@@ -119,6 +119,7 @@ Lights read_lights(const GltfDocument& document, const std::vector<PlacedNode>& 
   std::size_t with_range = 0;
   for (const PlacedNode& node : nodes) {
     if (node.light < 0) continue;
+    check_in_world(document, node, node.world_from_node.column(3), "a light");
     with_range += document.model->lights[node.light].range > 0 ? 1 : 0;
     if (const std::optional<Light> light = read_light(document, node)) {
       lights.push_back(*light);
@@ -133,7 +134,9 @@ Lights read_lights(const GltfDocument& document, const std::vector<PlacedNode>& 
 std::vector<Camera> read_cameras(const GltfDocument& document, const std::vector<PlacedNode>& nodes) {
   std::vector<Camera> cameras;
   for (const PlacedNode& node : nodes) {
-    if (node.camera >= 0) cameras.push_back(read_camera(document, node));
+    if (node.camera < 0) continue;
+    check_in_world(document, node, node.world_from_node.column(3), "a camera");
+    cameras.push_back(read_camera(document, node));
   }
   return cameras;
 }

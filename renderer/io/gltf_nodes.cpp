@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include "renderer/core/world_limits.h"
 #include "renderer/io/gltf_accessors.h"
 
 namespace chiaro::renderer {
@@ -110,6 +111,12 @@ std::vector<double> instance_values(const std::vector<float>& values, std::size_
 }  // namespace
 
 std::string place_of(const PlacedNode& node) { return node_place(std::size_t(node.node)); }
+
+void check_in_world(const GltfDocument& document, const PlacedNode& node, Vec3f point, const char* what) {
+  if (in_world(point)) return;
+  fail(document, place_of(node), fmt::format("puts {} at {:g}, {:g}, {:g}", what, point.x, point.y, point.z),
+       fmt::format("within {:g} m of the origin", kWorldLimit));
+}
 
 // A node that no root leads to is part of a cycle.
 std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose& pose) {

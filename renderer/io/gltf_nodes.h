@@ -29,6 +29,9 @@ std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose
 // "nodes[3]"
 std::string place_of(const PlacedNode& node);
 
+// Error, naming the node, for a point of it that is beyond the world's limits. `what`: "a vertex", "a light", …
+void check_in_world(const GltfDocument& document, const PlacedNode& node, Vec3f point, const char* what);
+
 // EXT_mesh_gpu_instancing: the node's transforms of each copy of its mesh; one, the node's own, without it.
 std::vector<Mat4f> instance_transforms(const GltfDocument& document, const PlacedNode& node);
 

@@ -5,11 +5,19 @@
 #include <string>
 #include <string_view>
 
+#include "renderer/core/external_files.h"
+
 namespace chiaro::renderer {
 
-// What `uri` refers to: the bytes of a data URI, or of a file relative to `gltf`, its name percent-encoded or not.
-// Error, naming `gltf`, `place` and the file, for what is missing, not a file, or not well formed.
-std::string read_uri(const std::string& uri, const std::filesystem::path& gltf, const std::string& place);
+// The file that has the URIs.
+struct UriBase {
+  std::filesystem::path gltf;
+  ExternalFiles external = ExternalFiles::kInFolder;
+};
+
+// What `uri` refers to: the bytes of a data URI, or of a file relative to the glTF file, its name percent-encoded or
+// not. Error, naming that, `place` and the file, for what is missing, not a file, not allowed, or not well formed.
+std::string read_uri(const std::string& uri, const UriBase& base, const std::string& place);
 
 bool is_data_uri(std::string_view uri);
 

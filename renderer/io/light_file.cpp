@@ -9,6 +9,8 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/external_files.h"
+#include "renderer/core/world_limits.h"
 #include "renderer/io/environment_file.h"
 #include "renderer/io/gltf_container.h"
 #include "renderer/io/gltf_document.h"
@@ -49,7 +51,11 @@ Vec3f read_vec3(const Entry& entry, const char* field, const std::string& expect
   return result;
 }
 
-Vec3f read_position(const Entry& entry) { return read_vec3(entry, "position", "three numbers, metres"); }
+Vec3f read_position(const Entry& entry) {
+  const Vec3f position = read_vec3(entry, "position", "three numbers, metres");
+  if (in_world(position)) return position;
+  fail(entry, "position", "is too far away", fmt::format("within {:g} m of the origin", kWorldLimit));
+}
 
 Vec3f read_intensity(const Entry& entry, const char* unit) {
   const std::string expected = fmt::format("three numbers, not negative, {}", unit);
@@ -103,10 +109,12 @@ std::filesystem::path read_image_path(const Entry& entry) {
   const std::string name = read_string(entry, "image", "");
   const std::filesystem::path image = std::filesystem::path(name).lexically_normal();
   if (name.empty()) fail(entry, "image", "is missing", expected);
-  if (image.is_absolute() || *image.begin() == "..") {
+  const std::filesystem::path folder = std::filesystem::path(entry.file).parent_path(), file = folder / image;
+  const bool leads_out = image.is_absolute() || *image.begin() == "..";
+  if (leads_out || (std::filesystem::exists(file) && !is_in_folder(file, folder))) {
     fail(entry, "image", fmt::format("\"{}\" is outside the light file's folder", name.substr(0, 200)), expected);
   }
-  return std::filesystem::path(entry.file).parent_path() / image;
+  return file;
 }
 
 float read_factor(const Entry& entry, const char* field, float low, float high, const std::string& expected) {

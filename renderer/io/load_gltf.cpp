@@ -21,29 +21,25 @@ std::string instance_name(const PlacedNode& node, const Mesh& mesh) {
   return mesh.name.empty() ? fmt::format("node {}", node.node) : mesh.name;
 }
 
-void check_finite(const GltfDocument& document, const PlacedNode& node, const Mesh& mesh, const Mat4f& transform) {
-  for (const Vec3f& p : mesh.positions) {
-    if (!is_finite(transform_point(transform, p))) fail(document, place_of(node), "puts vertices at infinity");
-  }
+void add_instance(const GltfDocument& document, const PlacedNode& node, int index, const Mat4f& transform,
+                  Scene& scene) {
+  const Mesh& mesh = scene.meshes[index];
+  for (const Vec3f& p : mesh.positions) check_in_world(document, node, transform_point(transform, p), "a vertex");
+  scene.instances.push_back({instance_name(node, mesh), index, transform});
 }
 
 // Copies without volume, as scales of zero make them, cannot be seen. Returns how many were left out.
 std::size_t add_instances(const GltfDocument& document, const PlacedNode& node, const NodeMeshes& meshes,
                           Scene& scene) {
   std::size_t flattened = 0;
-  for (const int mesh : meshes.in_world) {
-    scene.instances.push_back({instance_name(node, scene.meshes[mesh]), mesh, Mat4f{}});
-  }
+  for (const int mesh : meshes.in_world) add_instance(document, node, mesh, Mat4f{}, scene);
   for (const Mat4f& transform : instance_transforms(document, node)) {
     const float determinant = determinant3(transform);
     if (determinant == 0 || !std::isfinite(determinant)) {
       ++flattened;
       continue;
     }
-    for (const int mesh : meshes.in_node) {
-      check_finite(document, node, scene.meshes[mesh], transform);
-      scene.instances.push_back({instance_name(node, scene.meshes[mesh]), mesh, transform});
-    }
+    for (const int mesh : meshes.in_node) add_instance(document, node, mesh, transform, scene);
   }
   return meshes.in_node.empty() ? 0 : flattened;
 }
@@ -66,7 +62,7 @@ void warn_of_repairs(const NodeMeshList& meshes, std::size_t flattened, std::vec
 }  // namespace
 
 LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
-  GltfDocument document = open_gltf(path);
+  GltfDocument document = open_gltf(path, options.external);
   const int variant = find_variant(document, options.variant);
   load_buffers(document);
   LoadedScene loaded;

@@ -12,8 +12,9 @@
 namespace chiaro::renderer {
 
 struct LoadOptions {
-  AnimationChoice animation;
-  std::string variant;  // of KHR_materials_variants; empty: the materials that primitives have of their own
+  AnimationChoice animation = {};
+  std::string variant = {};  // of KHR_materials_variants; empty: the materials that primitives have of their own
+  ExternalFiles external = ExternalFiles::kInFolder;
 };
 
 struct LoadedScene {

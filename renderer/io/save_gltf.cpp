@@ -152,7 +152,7 @@ void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights
   ordered_json root = ordered_json::parse(container.json);
   if (!options.keep_lights) remove_lights(root);
   add_lights(root, lights);
-  GltfEmbedding embedding{scene_path, writes_text(path)};
+  GltfEmbedding embedding{{scene_path, options.external}, writes_text(path)};
   container.json =
       embed(root.dump(-1, ' ', false, ordered_json::error_handler_t::replace), container.binary, embedding);
   write_file_atomically(path, embedding.as_text ? container.json : make_glb(container, path));

@@ -2,12 +2,14 @@
 
 #include <filesystem>
 
+#include "renderer/core/external_files.h"
 #include "renderer/scene/light.h"
 
 namespace chiaro::renderer {
 
 struct AddLightsOptions {
-  bool keep_lights = false;  // lights already in the scene stay; otherwise they are taken out
+  bool keep_lights = false;                           // lights already in the scene stay; otherwise they are taken out
+  ExternalFiles external = ExternalFiles::kInFolder;  // that the scene may embed
 };
 
 // Writes `scene_path` (.glb or .gltf) as `path` (.glb, or .gltf with data embedded) with KHR_lights_punctual nodes for

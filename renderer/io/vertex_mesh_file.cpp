@@ -83,10 +83,10 @@ std::vector<Vec3f> world_normals(const VertexMeshPart& part, const std::vector<V
 }
 
 void move_to_world(const GltfDocument& document, const PlacedNode& node, std::vector<Vec3f>& positions) {
-  if (is_identity(node.world_from_node)) return;
+  const bool stays = is_identity(node.world_from_node);
   for (Vec3f& p : positions) {
-    p = transform_point(node.world_from_node, p);
-    if (!is_finite(p)) fail(document, place_of(node), "puts vertices at infinity");
+    if (!stays) p = transform_point(node.world_from_node, p);
+    check_in_world(document, node, p, "a vertex");
   }
 }
 

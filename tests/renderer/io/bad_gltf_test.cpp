@@ -142,6 +142,38 @@ const BadCase kBadCases[] = {
        g.root["materials"] = J::array({{{"normalTexture", {{"index", 0}}}}});
      },
      "images[0] \"torn\""},
+    {"TextureThatDecodersChokeOn",
+     [](GltfBuilder& g) {
+       const std::string gif(
+           "GIF8`\0\0\x80SDDS P8 \0\0\0\0\xa6\x1f"
+           "4\xc0"
+           "0\x80?3\xff\xf5\xc5[\x97"
+           "7text\xdf\x18\xc0\0",
+           39);
+       g.root["images"] = J::array({{{"bufferView", g.add_view(gif)}}});
+       g.root["textures"] = J::array({{{"source", 0}}});
+       g.root["materials"] = J::array({{{"normalTexture", {{"index", 0}}}}});
+     },
+     "images[0]"},
+    {"VertexBeyondTheWorld",
+     [](GltfBuilder& g) {
+       g.root["nodes"][0]["scale"] = {2e9, 1, 1};
+     },
+     "nodes[0]: puts a vertex at 2e+09, 0, 0 (expected within 1e+09 m of the origin)"},
+    {"CameraBeyondTheWorld",
+     [](GltfBuilder& g) {
+       g.root["cameras"] = J::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+       g.add_node({{"camera", 0}, {"translation", {0, -1e30, 0}}});
+     },
+     "nodes[1]: puts a camera at"},
+    {"LightBeyondTheWorld",
+     [](GltfBuilder& g) {
+       g.root["extensions"]["KHR_lights_punctual"]["lights"] = J::array({{{"type", "point"}}});
+       g.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+       g.root["nodes"][0].erase("mesh");
+       g.root["nodes"][0]["translation"] = {0, 1.5e9, 0};
+     },
+     "nodes[0]: puts a light at 0, 1.5e+09, 0"},
     {"AlphaMode",
      [](GltfBuilder& g) {
        g.root["materials"] = J::array({{{"alphaMode", "GLOW"}}});

@@ -89,6 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "lights[0].position"},
         BadLights{"InfiniteAsFloat", R"({"lights":[{"position":[1,2,1e300],"intensity":[1,1,1]}]})",
                   "position: is not finite"},
+        BadLights{"BeyondTheWorld", R"({"lights":[{"position":[1,-2e9,3],"intensity":[1,1,1]}]})",
+                  "lights[0].position: is too far away (expected within 1e+09 m of the origin)"},
         BadLights{"InfiniteAsDouble", R"({"lights":[{"position":[1,2,1e999],"intensity":[1,1,1]}]})", "out of range"},
         BadLights{"NegativeIntensity", R"({"lights":[{"position":[1,2,3],"intensity":[1,-1,1]}]})",
                   "lights[0].intensity: is negative"},

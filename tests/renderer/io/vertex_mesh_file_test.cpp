@@ -101,6 +101,16 @@ TEST(VertexMeshFile, BadAttributesAreRefused) {
             std::string::npos);
 }
 
+TEST(VertexMeshFile, VerticesBeyondTheWorldAreRefused) {
+  const TemporaryFolder folder;
+  for (const float far : {1.1e9F, 1e30F}) {
+    GltfBuilder gltf = triangle_scene();
+    gltf.primitive()["attributes"]["POSITION"] = gltf.add_accessor<float>({0, 0, 0, far, 0, 0, 0, 1, 0}, 3, kFloat);
+    const auto path = folder.write("mesh.glb", gltf.glb());
+    EXPECT_NE(error_of([&] { load_vertex_mesh(path); }).find("nodes[0]: puts a vertex at"), std::string::npos) << far;
+  }
+}
+
 TEST(VertexMeshFile, IntegerIlluminationIsOfTheWrongKind) {
   const TemporaryFolder folder;
   GltfBuilder gltf = triangle_scene();

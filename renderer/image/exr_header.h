@@ -1,0 +1,14 @@
+#pragma once
+// The header of an OpenEXR file, looked at before a library takes memory by what it says.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace chiaro::renderer {
+
+// What is wrong with it: attributes that are longer than the file. Absent where nothing is, and for other files.
+// Source: Industrial Light & Magic, OpenEXR File Layout, section "Header".
+std::optional<std::string> find_exr_header_damage(const std::filesystem::path& path);
+
+}  // namespace chiaro::renderer

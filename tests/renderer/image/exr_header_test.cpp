@@ -1,0 +1,72 @@
+#include "renderer/image/exr_header.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "renderer/image/exr_tiles.h"
+#include "renderer/image/image_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chiaro::renderer {
+namespace {
+
+std::string number(std::uint32_t value) {
+  std::string bytes(4, '\0');
+  std::memcpy(bytes.data(), &value, 4);
+  return bytes;
+}
+
+std::string attribute(const std::string& name, std::uint32_t claimed_size, const std::string& contents) {
+  return name + '\0' + "string" + '\0' + number(claimed_size) + contents;
+}
+
+std::string header(std::uint32_t version, const std::string& attributes) {
+  return number(20000630) + number(version) + attributes;
+}
+
+std::optional<std::string> damage_of(const std::string& bytes) {
+  const test::TemporaryFolder folder;
+  return find_exr_header_damage(folder.write("a.exr", bytes));
+}
+
+TEST(ExrHeader, FilesOfOursAreWhole) {
+  const test::TemporaryFolder folder;
+  Image image = make_image(3, 2, {"R", "G", "B"});
+  save_image(image, folder / "a.exr", PixelType::kHalf, {{"note", std::string(5000, 'x')}});
+  EXPECT_EQ(find_exr_header_damage(folder / "a.exr"), std::nullopt);
+}
+
+TEST(ExrHeader, OtherFilesAreNotItsConcern) {
+  EXPECT_EQ(damage_of(""), std::nullopt);
+  EXPECT_EQ(damage_of("v/"), std::nullopt);
+  EXPECT_EQ(damage_of("\x89PNG and so on"), std::nullopt);
+}
+
+TEST(ExrHeader, PartsOfMultipartFilesArePassed) {
+  const std::string part = attribute("name", 2, "ab") + '\0';
+  EXPECT_EQ(damage_of(header(2 | 0x1000, part + part + '\0')), std::nullopt);
+}
+
+TEST(ExrHeader, AnAttributeLongerThanTheFileIsNamedBeforeMemoryIsTakenForIt) {
+  for (const std::uint32_t size : {3U, 0x7FFFFFFFU, 0xFFFFFFFFU}) {
+    const std::string bytes = header(2, attribute("note", size, "ab"));
+    EXPECT_NE(damage_of(bytes).value_or("").find("\"note\""), std::string::npos) << size;
+    const test::TemporaryFolder folder;
+    EXPECT_THROW(load_image(folder.write("a.exr", bytes)), Error);
+    EXPECT_THROW(ExrTileReader(folder / "a.exr"), Error);
+  }
+}
+
+TEST(ExrHeader, AHeaderThatEndsEarlyIsCutShort) {
+  const std::string whole = header(2, attribute("note", 2, "ab")) + '\0';
+  for (std::size_t length = 8; length < whole.size(); ++length) {
+    EXPECT_TRUE(damage_of(whole.substr(0, length)).has_value()) << length;
+  }
+  EXPECT_EQ(damage_of(whole), std::nullopt);
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
