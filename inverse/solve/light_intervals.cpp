@@ -1,5 +1,6 @@
 #include "inverse/solve/light_intervals.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -8,10 +9,11 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kParameters = 6;      // of a light: x, y, z, red, green, blue
-constexpr double kNinety = 1.645;   // standard deviations to either side
-constexpr double kOpposed = 0.9;    // correlation, and less than its negative: one makes good what the other lacks
-constexpr double kUnknown = 1e-10;  // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
+constexpr int kParameters = 6;          // of a light: x, y, z, red, green, blue
+constexpr double kNinety = 1.645;       // standard deviations to either side
+constexpr double kOpposed = 0.9;        // correlation, and less than its negative: one makes good what the other lacks
+constexpr double kUnknown = 1e-10;      // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
+constexpr double kLeastOutside = 0.01;  // of what a receiver leaves, as far as the others decide it
 
 // Receivers × parameters, by what one channel shows of them.
 Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights, int channel) {
@@ -27,22 +29,43 @@ Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const L
   return j;
 }
 
-// Covariance of the parameters; variances are infinite where the normal matrix tells nothing.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& scatter) {
+// The pseudoinverse of a normal matrix.
+struct NormalInverse {
+  Eigen::MatrixXd matrix;
+  std::vector<bool> known;  // the normal matrix tells of this parameter
+};
+
+NormalInverse invert(const Eigen::MatrixXd& normal) {
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * normal * scale.asDiagonal());
   const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double e) { return e > kUnknown ? 1 / e : 0; });
-  const Eigen::MatrixXd solved =
-      eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
-  Eigen::MatrixXd covariance = scale.asDiagonal() * (solved * scatter * solved.transpose()) * scale.asDiagonal();
+  const Eigen::MatrixXd vectors = scale.asDiagonal() * eigen.eigenvectors();
+  NormalInverse result{vectors * inverse.asDiagonal() * vectors.transpose(), {}};
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
     double known = scale[k] > 0 ? 1 : 0;
     for (Eigen::Index e = 0; e < inverse.size(); ++e) {
       if (inverse[e] <= 0) known -= eigen.eigenvectors()(k, e) * eigen.eigenvectors()(k, e);
     }
-    if (known < 0.5) covariance(k, k) = std::numeric_limits<double>::infinity();
+    result.known.push_back(known >= 0.5);
   }
-  return covariance;
+  return result;
+}
+
+// Receivers × parameters: how far each pulls, with what it would leave if it were left out of the fit.
+Eigen::MatrixXd pulls_of(const std::array<Eigen::MatrixXd, 3>& jacobians, const Eigen::MatrixXd& residual,
+                         const Eigen::VectorXd& weight, const Eigen::MatrixXd& inverse_normal) {
+  Eigen::MatrixXd pull(weight.size(), inverse_normal.cols());
+  Eigen::Matrix<double, 3, Eigen::Dynamic> j(3, inverse_normal.cols());
+  for (Eigen::Index i = 0; i < weight.size(); ++i) {
+    for (int c = 0; c < 3; ++c) j.row(c) = jacobians[std::size_t(c)].row(i);
+    const Eigen::Matrix3d leverage = weight[i] * j * inverse_normal * j.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(leverage);
+    const Eigen::Vector3d outside = (1 - eigen.eigenvalues().array()).max(kLeastOutside).inverse();
+    const Eigen::Vector3d left_out =
+        eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose() * residual.row(i).transpose();
+    pull.row(i) = weight[i] * left_out.transpose() * j;
+  }
+  return pull;
 }
 
 // What one light has more the other has less, by as much as they shine.
@@ -67,18 +90,19 @@ LightIntervals light_intervals(const LightResponse& response, const Observations
   const std::vector<ColumnWithGradient> columns = evaluate_columns_with_gradient(response, lights);
   const auto parameters = Eigen::Index(kParameters * lights.size());
   const Eigen::VectorXd weight = observations.sqrt_weight.cwiseAbs2();
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(parameters, parameters);
-  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(weight.size(), parameters);  // of each receiver
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(parameters, parameters), residual = -observations.wanted;
+  std::array<Eigen::MatrixXd, 3> jacobians;
   for (int c = 0; c < 3; ++c) {
-    const Eigen::MatrixXd j = jacobian(columns, lights, c);
-    Eigen::VectorXd residual = -observations.wanted.col(c);
-    for (std::size_t l = 0; l < lights.size(); ++l) residual += lights[l].intensity[c] * columns[l].value.col(c);
-    normal += j.transpose() * weight.asDiagonal() * j;
-    pull += weight.cwiseProduct(residual).asDiagonal() * j;
+    jacobians[std::size_t(c)] = jacobian(columns, lights, c);
+    for (std::size_t l = 0; l < lights.size(); ++l) residual.col(c) += lights[l].intensity[c] * columns[l].value.col(c);
+    normal += jacobians[std::size_t(c)].transpose() * weight.asDiagonal() * jacobians[std::size_t(c)];
   }
-  // What the fit has taken up of the noise.
-  const double freedom = double(3 * weight.size()) / std::max(1.0, double(3 * weight.size() - parameters));
-  const Eigen::MatrixXd covariance = covariance_of(normal, freedom * pull.transpose() * pull);
+  const NormalInverse inverse = invert(normal);
+  const Eigen::MatrixXd pull = pulls_of(jacobians, residual, weight, inverse.matrix);
+  Eigen::MatrixXd covariance = inverse.matrix * (pull.transpose() * pull) * inverse.matrix;
+  for (Eigen::Index k = 0; k < parameters; ++k) {
+    if (!inverse.known[std::size_t(k)]) covariance(k, k) = std::numeric_limits<double>::infinity();
+  }
   LightIntervals intervals;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const Eigen::VectorXd half =

@@ -19,7 +19,9 @@ struct LightIntervals {
 // the noise of the target and the errors of transport alike; no noise need be known. Infinite
 // where receivers tell nothing of a parameter.
 // Source: White, A heteroskedasticity-consistent covariance matrix estimator and a direct test for heteroskedasticity,
-// 1980; a receiver's channels count as one cluster.
+// 1980; a receiver's channels count as one cluster. MacKinnon, White, Some heteroskedasticity-consistent covariance
+// matrix estimators with improved finite sample properties, 1985 (HC3); Bell, McCaffrey, Bias reduction in standard
+// errors for linear regression with multi-stage samples, 2002.
 LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
                                const LightEstimates& lights);
 
