@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test.  PRESET=asan bash tests/run.sh for the sanitizers.
+# Installs what is missing, builds, and runs every test: as released, and the unit tests and fuzz targets once more, built
+# by Clang with the sanitizers. PRESET=release (or debug, asan, tsan, fuzz) bash tests/run.sh runs one of them alone.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-preset=${PRESET:-release}
+read -ra presets <<<"${PRESET:-release fuzz}"
 
-bash cmake/install_dependencies.sh chromium  # opens the report's page
-echo "chiaro: building preset $preset"
-cmake --preset "$preset" >/dev/null
-cmake --build --preset "$preset"
-echo "chiaro: testing"
-ctest --preset "$preset" --parallel "$(nproc)"
+bash cmake/install_dependencies.sh chromium clang libclang-rt-14-dev  # Chromium opens the report's page
+for preset in "${presets[@]}"; do
+  echo "chiaro: building preset $preset"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset"
+  echo "chiaro: testing preset $preset"
+  ctest --preset "$preset" --parallel "$(nproc)"
+done

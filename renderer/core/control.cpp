@@ -7,11 +7,17 @@
 #include <tbb/parallel_for.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/fork_join.h"
 
 namespace chiaro::renderer {
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-  tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner());
+  ForkJoin loop;
+  const auto run = [&](std::size_t i) CHIARO_UNSEEN_BY_THREAD_SANITIZER {
+    const ForkJoin::Body begun(loop);
+    body(i);
+  };
+  tbb::parallel_for(std::size_t{0}, count, run, tbb::simple_partitioner());
 }
 
 void parallel_for(std::size_t count, std::string_view stage, const Control& control,

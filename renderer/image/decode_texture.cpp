@@ -26,7 +26,6 @@ std::string file_name_for(std::string_view encoded) {
   if (begins("\xff\xd8\xff")) return "texture.jpg";
   if (begins("RIFF") && begins("WEBP", 8)) return "texture.webp";
   if (begins("ftypavif", 4) || begins("ftypavis", 4)) return kAvifName;
-  if (begins("GIF8")) return "texture.gif";
   if (begins("BM")) return "texture.bmp";
   if (begins("DDS ")) return "texture.dds";
   return "";

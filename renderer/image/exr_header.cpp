@@ -1,5 +1,6 @@
 #include "renderer/image/exr_header.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
@@ -10,10 +11,12 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::uint32_t kMagic = 20000630, kMultipart = 1U << 12;
+constexpr std::uint64_t kMostPixelsOfTile = 1U << 24, kMostPixelsOfLine = 1U << 24;  // libraries take memory for one
 
-std::optional<std::uint32_t> read_number(std::istream& stream) {
+// 0 where the stream ends, which it then says.
+std::uint32_t read_number(std::istream& stream) {
   std::array<unsigned char, 4> bytes{};
-  if (!stream.read(reinterpret_cast<char*>(bytes.data()), bytes.size())) return std::nullopt;
+  stream.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
   return bytes[0] | std::uint32_t(bytes[1]) << 8 | std::uint32_t(bytes[2]) << 16 | std::uint32_t(bytes[3]) << 24;
 }
 
@@ -27,21 +30,52 @@ std::optional<std::string> read_name(std::istream& stream) {
   return std::nullopt;
 }
 
+struct Header {
+  std::uint64_t line = 0, tile = 0;  // pixels; tile 0: there are none
+};
+
+// Values of an attribute that say how much is read at once.
+void read_value(std::istream& stream, const std::string& name, std::uint32_t size, Header& header) {
+  const auto end = stream.tellg() + std::streamoff(size);
+  if (name == "tiles" && size >= 8) {
+    const std::uint64_t width = read_number(stream), height = read_number(stream);
+    header.tile = width * std::min<std::uint64_t>(height, kMostPixelsOfTile + 1);
+  }
+  if (name == "dataWindow" && size >= 16) {
+    const auto left = std::int32_t(read_number(stream));
+    read_number(stream);
+    header.line = std::uint64_t(std::int64_t(std::int32_t(read_number(stream))) - left + 1);
+  }
+  stream.seekg(end);
+}
+
+std::optional<std::string> oversized(const Header& header) {
+  if (header.tile > kMostPixelsOfTile) return fmt::format("its header is corrupt: tiles of {} pixels", header.tile);
+  if (header.tile == 0 && header.line > kMostPixelsOfLine) {
+    return fmt::format("its header is corrupt: lines of {} pixels", header.line);
+  }
+  return std::nullopt;
+}
+
 // Passes the attributes of one part; whether there were any.
 bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<std::string>& damage) {
+  Header header;
   bool any = false;
   while (true) {
     const std::optional<std::string> name = read_name(stream);
-    if (name && name->empty()) return any;
+    if (name && name->empty()) {
+      damage = oversized(header);
+      return any;
+    }
     const std::optional<std::string> type = name ? read_name(stream) : std::nullopt;
-    const std::optional<std::uint32_t> size = type ? read_number(stream) : std::nullopt;
-    if (!size) {
+    const std::uint32_t size = read_number(stream);
+    if (!type || !stream) {
       damage = "its header is cut short";
-    } else if (*size > file_size - std::uintmax_t(stream.tellg())) {
-      damage = fmt::format("its header is corrupt: attribute \"{}\" of {} bytes", name->substr(0, 40), *size);
+    } else if (size > file_size - std::uintmax_t(stream.tellg())) {
+      damage = fmt::format("its header is corrupt: attribute \"{}\" of {} bytes", name->substr(0, 40), size);
     }
     if (damage) return any;
-    stream.seekg(*size, std::ios::cur);
+    read_value(stream, *name, size, header);
     any = true;
   }
 }
@@ -53,10 +87,9 @@ std::optional<std::string> find_exr_header_damage(const std::filesystem::path& p
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);
   if (!stream || no_size || read_number(stream) != kMagic) return std::nullopt;
-  const std::optional<std::uint32_t> version = read_number(stream);
+  const bool multipart = (read_number(stream) & kMultipart) != 0;
   std::optional<std::string> damage;
   bool more = pass_header(stream, size, damage);
-  const bool multipart = version && (*version & kMultipart) != 0;
   while (!damage && multipart && more) more = pass_header(stream, size, damage);
   return damage;
 }

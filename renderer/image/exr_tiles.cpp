@@ -32,7 +32,7 @@ namespace {
 
 // zlib's fastest: the tenth that it leaves is not worth twice the time.
 constexpr int kZipLevel = 1;
-constexpr int kMostPixelsAcross = 1 << 30, kMostPixelsOfTile = 1 << 24;
+constexpr int kMostPixelsAcross = 1 << 30;
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
   throw Error({path.string(), "", "cannot be written: " + reason, ""});
@@ -199,8 +199,7 @@ ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
   const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
   bool sensible = display.min == Imath::V2i(0, 0) && data.min.y == 0 && data.max.y == display.max.y &&
                   data.min.x >= 0 && data.max.x <= display.max.x && display.max.x < kMostPixelsAcross &&
-                  header.tileDescription().mode == Imf::ONE_LEVEL &&
-                  std::int64_t(header.tileDescription().xSize) * header.tileDescription().ySize <= kMostPixelsOfTile;
+                  header.tileDescription().mode == Imf::ONE_LEVEL;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
     sensible = sensible && it.channel().type == Imf::HALF && it.channel().xSampling == 1 && it.channel().ySampling == 1;
     shape_.channels.emplace_back(it.name());

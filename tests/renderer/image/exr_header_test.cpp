@@ -60,6 +60,24 @@ TEST(ExrHeader, AnAttributeLongerThanTheFileIsNamedBeforeMemoryIsTakenForIt) {
   }
 }
 
+TEST(ExrHeader, TilesAndLinesBeyondAllMeasureAreRefused) {
+  const auto window = [](std::uint32_t last) {
+    return std::string("dataWindow") + '\0' + "box2i" + '\0' + number(16) + number(0) + number(0) + number(last) +
+           number(0);
+  };
+  const auto tiles = [](std::uint32_t width, std::uint32_t height) {
+    return std::string("tiles") + '\0' + "tiledesc" + '\0' + number(9) + number(width) + number(height) + '\0';
+  };
+  const auto damage = [](const std::string& attributes) {
+    return damage_of(header(2, attributes + '\0')).value_or("nothing");
+  };
+  EXPECT_NE(damage(window(1U << 30)).find("lines of"), std::string::npos);
+  EXPECT_NE(damage(tiles(1U << 20, 1U << 20)).find("tiles of"), std::string::npos);
+  EXPECT_NE(damage(tiles(0xFFFFFFFF, 0xFFFFFFFF)).find("tiles of"), std::string::npos);
+  EXPECT_EQ(damage(window(1U << 30) + tiles(1, 1024)), "nothing");
+  EXPECT_EQ(damage(window(4095)), "nothing");
+}
+
 TEST(ExrHeader, AHeaderThatEndsEarlyIsCutShort) {
   const std::string whole = header(2, attribute("note", 2, "ab")) + '\0';
   for (std::size_t length = 8; length < whole.size(); ++length) {

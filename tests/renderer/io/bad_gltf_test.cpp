@@ -142,19 +142,6 @@ const BadCase kBadCases[] = {
        g.root["materials"] = J::array({{{"normalTexture", {{"index", 0}}}}});
      },
      "images[0] \"torn\""},
-    {"TextureThatDecodersChokeOn",
-     [](GltfBuilder& g) {
-       const std::string gif(
-           "GIF8`\0\0\x80SDDS P8 \0\0\0\0\xa6\x1f"
-           "4\xc0"
-           "0\x80?3\xff\xf5\xc5[\x97"
-           "7text\xdf\x18\xc0\0",
-           39);
-       g.root["images"] = J::array({{{"bufferView", g.add_view(gif)}}});
-       g.root["textures"] = J::array({{{"source", 0}}});
-       g.root["materials"] = J::array({{{"normalTexture", {{"index", 0}}}}});
-     },
-     "images[0]"},
     {"VertexBeyondTheWorld",
      [](GltfBuilder& g) {
        g.root["nodes"][0]["scale"] = {2e9, 1, 1};
