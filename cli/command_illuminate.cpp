@@ -40,6 +40,7 @@ void print_summary(Session& session, const IlluminateCommand& options, const Tra
 int run_illuminate(const IlluminateCommand& options) {
   Session session(options.common);
   require_writable(options.output);
+  require_apart({options.scene, options.lights}, {options.output});
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   require_light(stage, lights);

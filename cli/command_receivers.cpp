@@ -36,6 +36,7 @@ void print_summary(Session& session, const ReceiversCommand& options, const inve
 int run_receivers(const ReceiversCommand& options) {
   Session session(options.common);
   require_writable(options.output);
+  require_apart({options.scene}, {options.output});
   const renderer::LoadedScene loaded = renderer::load_gltf(options.scene, options.load);
   session.warn(loaded.warnings);
   const inverse::Receivers receivers = inverse::make_receivers(loaded.scene, {.max_edge = options.max_edge});

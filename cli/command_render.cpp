@@ -29,6 +29,7 @@ struct RenderCommand {
 
 void require_outputs(const RenderCommand& options) {
   require_writable(options.output);
+  require_apart({options.transport.environment.image}, {options.output});
   if (options.preview) require_writable(beside(options.output, ".png"));
   require_color_choices(options.frame, options.preview);
 }

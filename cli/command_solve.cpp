@@ -65,6 +65,8 @@ int run_solve(SolveCommand options) {
   require_writable(options.output);
   require_writable(beside(options.output, ".json"));
   if (!options.save_target.empty()) require_writable(options.save_target);
+  require_apart({options.choices.target.file, options.from, options.choices.constraint_options.file, options.cache},
+                {options.output, beside(options.output, ".json"), options.save_target});
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);

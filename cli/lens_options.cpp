@@ -11,7 +11,9 @@ namespace chiaro::cli {
 namespace {
 
 constexpr CountRange kBlades{3, 64};
-constexpr float kAllSharp = 1e6F;  // metres
+constexpr NumberRange kFNumbers{.min = 0.01, .max = 1e4};
+constexpr NumberRange kLengths{.min = 1e-3, .max = 1e6};  // millimetres, or metres
+constexpr float kAllSharp = 1e6F;                         // metres
 
 float focal_length(const LensOptions& options, const renderer::Camera& camera) {
   if (options.focal_length) return *options.focal_length;
@@ -38,9 +40,9 @@ float camera_exposure(const LensOptions& options) {
 void add_lens_options(CLI::App& command, LensOptions& options) {
   CLI::Option* f_number =
       add_number(command, {"--f-number", "N", "Depth of field of a lens of this f-number (default: all is sharp)"},
-                 options.f_number, kPositive);
+                 options.f_number, kFNumbers);
   const auto add = [&](const OptionText& text, auto& value) {
-    add_number(command, text, value, kPositive)->needs(f_number);
+    add_number(command, text, value, kLengths)->needs(f_number);
   };
   add({"--focus-distance", "M", "Metres to what is sharp (default: to what the frame's middle shows)"},
       options.focus_distance);

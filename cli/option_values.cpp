@@ -69,7 +69,8 @@ template <>
 float parse_as<float>(std::string_view text, const NumberRange& range) {
   const double value = parse_number(text, range);
   const bool fits = std::abs(value) <= double(std::numeric_limits<float>::max());
-  if (!fits || !contains(range, double(float(value)))) refuse(text, describe(range));
+  if (!fits) refuse(text, fmt::format("a number of at most {:.1e}", std::numeric_limits<float>::max()));
+  if (!contains(range, double(float(value)))) refuse(text, describe(range));
   return float(value);
 }
 

@@ -43,6 +43,17 @@ bool is_standard_output(const std::filesystem::path& path) {
   return output.st_dev == file.st_dev && output.st_ino == file.st_ino;
 }
 
+// Links in the place of the file itself are not followed: an output takes the link's place, not that of what it leads
+// to.
+bool are_same(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (a.empty() || b.empty() || a.filename() != b.filename()) return false;
+  const auto folder = [](const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  };
+  std::error_code unknown;
+  return std::filesystem::equivalent(folder(a), folder(b), unknown);
+}
+
 }  // namespace
 
 bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
@@ -68,6 +79,19 @@ void require_writable(const std::filesystem::path& path) {
     throw Error({path.string(), "", "is where standard output goes", "another file for the summary"});
   }
   try_to_make_file(folder, path);
+}
+
+void require_apart(const std::vector<std::filesystem::path>& inputs,
+                   const std::vector<std::filesystem::path>& outputs) {
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const auto is_the_same = [&](const auto& other) { return are_same(other, outputs[k]); };
+    if (std::any_of(inputs.begin(), inputs.end(), is_the_same)) {
+      throw Error({outputs[k].string(), "", "is an input of this command", "another name for the output"});
+    }
+    if (std::any_of(outputs.begin(), outputs.begin() + std::ptrdiff_t(k), is_the_same)) {
+      throw Error({outputs[k].string(), "", "is another output of this command", "a name of its own for each"});
+    }
+  }
 }
 
 void require_not_a_file(const std::filesystem::path& folder) {

@@ -1,6 +1,7 @@
 #include "cli/program.h"
 
 #include <cstdio>
+#include <iostream>
 #include <new>
 #include <string>
 #include <utility>
@@ -73,7 +74,9 @@ int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, co
     program.parse(argc, argv);
     return run_parsed_command(commands);
   } catch (const CLI::Success& help_or_version) {
-    return program.exit(help_or_version);
+    const int code = program.exit(help_or_version);
+    std::cout.flush();
+    return std::cout ? code : fail("standard output: cannot be written");
   } catch (const CLI::ParseError& error) {
     return fail_usage(program, error.what());
   } catch (const UsageError& error) {

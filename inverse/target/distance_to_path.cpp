@@ -21,11 +21,11 @@ using Eigen::Vector3d;
 using numerics::TriangleCorners;
 using Piece = SurfacePath::Piece;
 
-constexpr double kSamePoint = 1e-5;      // corners are one: distance ≤ this × radius
-constexpr double kContact = 5e-3;        // surfaces meet: distance ≤ this × radius …
+constexpr double kSamePoint = 1e-5;      // corners are one: distance ≤ this × scale
+constexpr double kContact = 5e-3;        // surfaces meet: distance ≤ this × scale …
 constexpr double kContactOfEdge = 0.05;  // … and ≤ this × the shortest edge
-constexpr double kOnFace = 1e-4;         // a piece of the path lies on a face: distance ≤ this × radius
-constexpr double kCoarse = 0.02;         // triangles are looked at for contacts: edge > this × radius
+constexpr double kOnFace = 1e-4;         // a piece of the path lies on a face: distance ≤ this × scale
+constexpr double kCoarse = 0.02;         // triangles are looked at for contacts: edge > this × scale
 constexpr double kRounding = 16.0 * std::numeric_limits<float>::epsilon();  // of coordinates
 constexpr std::uint32_t kNone = ~0U;
 
@@ -194,13 +194,20 @@ struct LocalSurface {
   }
 };
 
-LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePath& path, double radius) {
+// Metres: the radius, but no more than the surface is large. Tolerances are parts of it.
+double scale_of(const ReceiverSurface& surface, double radius) {
+  renderer::Box3f box;
+  for (const renderer::Vec3f& p : surface.receivers.positions) box.extend(p);
+  return std::min(radius, double(box.diagonal()));
+}
+
+LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePath& path, double radius, double scale) {
   LocalSurface local{make_neighbourhood(surface, triangles_near(surface, path, radius)), {}, {}, {}};
   double largest = 0;
   for (const Vector3d& p : local.near.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  const double same_point = std::max(kSamePoint * radius, kRounding * largest);
-  const numerics::JoinTolerances tolerances{same_point, std::max(kContact * radius, same_point)};
-  const auto contacts = find_contacts(surface, local.near, tolerances, radius);
+  const double same_point = std::max(kSamePoint * scale, kRounding * largest);
+  const numerics::JoinTolerances tolerances{same_point, std::max(kContact * scale, same_point)};
+  const auto contacts = find_contacts(surface, local.near, tolerances, scale);
   local.joined = numerics::join_faces(local.near.positions, local.near.triangles, contacts, tolerances);
   local.sides = numerics::make_two_sided(local.joined);
   local.first_face.assign(local.near.triangles.size() + 1, 0);
@@ -211,11 +218,11 @@ LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePat
 
 // Points before segments: of two as near, the first counts, and a point in a corner lies on both surfaces there.
 std::vector<numerics::GeodesicSource> make_sources(const ReceiverSurface& surface, const LocalSurface& local,
-                                                   const SurfacePath& path, double radius) {
+                                                   const SurfacePath& path, double scale) {
   std::vector<numerics::GeodesicSource> points, segments;
   std::vector<std::uint32_t> items;
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
-    const double tolerance = kOnFace * radius;
+    const double tolerance = kOnFace * scale;
     const Piece& piece = path.pieces[i];
     items.clear();
     visit_near_piece(surface, piece, tolerance,
@@ -262,8 +269,9 @@ std::vector<numerics::GeodesicDistance> front_distances(const LocalSurface& loca
 
 std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface, const SurfacePath& path,
                                                   double radius) {
-  const LocalSurface local = make_local_surface(surface, path, radius);
-  const auto sources = make_sources(surface, local, path, radius);
+  const double scale = scale_of(surface, radius);
+  const LocalSurface local = make_local_surface(surface, path, radius, scale);
+  const auto sources = make_sources(surface, local, path, scale);
   const auto found = front_distances(local, numerics::geodesic_distance(local.sides.surface, sources, radius));
   std::vector<PathDistance> distances;
   for (std::size_t i = 0; i < found.size(); ++i) {

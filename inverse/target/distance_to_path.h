@@ -15,7 +15,8 @@ struct PathDistance {
 };
 
 // Along the surface, on the fronts of triangles: on the side that their corners' normals point to. Surfaces that meet
-// within 1/200 of the radius are one: what stands on a floor ends it, and the way goes on up there. Ascending.
+// within 1/200 of the radius, or of all receivers' extent where that is less, are one: what stands on a floor ends it,
+// and the way goes on up there. Ascending.
 std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface, const SurfacePath& path,
                                                   double radius);
 

@@ -6,9 +6,12 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
+
+constexpr float kDimmest = 1e-18F;  // cd/m²: at some receiver at least
 
 using renderer::Error;
 using renderer::VertexMesh;
@@ -35,7 +38,7 @@ float wanted_weight(const VertexMeshPart& part, std::size_t vertex) {
 void append_part(Target& target, const VertexMeshPart& part, float target_scale, const std::string& file) {
   for (std::size_t i = 0; i < part.positions.size(); ++i) {
     const Vec3f value = wanted_value(part, i, target_scale);
-    if (!is_finite(value) || min_component(value) < 0)
+    if (!is_finite(value) || min_component(value) < 0 || max_component(value) > renderer::kBrightest)
       fail_at_vertex(file, part, i, "illumination is negative or too large");
     target.illumination.push_back(value);
     target.weight.push_back(wanted_weight(part, i));
@@ -65,9 +68,10 @@ void check_not_empty(const Target& target, const VertexMesh& mesh, const std::st
     throw Error({file, "", "an empty target: every _WEIGHT is 0", "a weight > 0 somewhere"});
   }
   for (std::size_t i = 0; i < weight.size(); ++i) {
-    if (weight[i] > 0 && max_component(target.illumination[i]) > 0) return;
+    if (weight[i] > 0 && max_component(target.illumination[i]) >= kDimmest) return;
   }
-  throw Error({file, "", "an empty target: black wherever its weight is not 0", "illumination > 0 somewhere"});
+  throw Error({file, "", "an empty target: black, or all but, wherever its weight is not 0",
+               fmt::format("illumination of {:g} cd/m² or more somewhere", kDimmest)});
 }
 
 void check_scale(float target_scale) {

@@ -11,6 +11,7 @@
 
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -50,6 +51,10 @@ Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& oth
 }
 
 double clearance_of(const Mount& mount, const renderer::Scene& scene) {
+  if (mount.clearance && !(*mount.clearance <= double(renderer::kWorldLimit))) {
+    throw renderer::Error({scene.path, "lights on surfaces", fmt::format("a clearance of {:g} m", *mount.clearance),
+                           fmt::format("at most {:g} m", renderer::kWorldLimit)});
+  }
   return mount.clearance ? *mount.clearance : kDefaultClearance * double(surface_bounds(scene).diagonal());
 }
 

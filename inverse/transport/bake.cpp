@@ -102,8 +102,8 @@ void Baker::set_memory(double memory) {
   if (each < least) {
     throw renderer::Error(
         {tracer_.scene().path, "option --memory",
-         fmt::format("{:.0f} MB are left for the bake", std::max(0.0, memory) / 1e6),
-         fmt::format("{:.0f} MB or more, or fewer --samples", std::ceil((beside + 3 * least) / 1e6))});
+         fmt::format("leaves the bake {:.0f} MB beside the scene", std::max(0.0, memory) / 1e6),
+         fmt::format("{:.0f} MB more, or fewer --samples", std::ceil((beside + 3 * least - memory) / 1e6))});
   }
   receivers_at_once_ = round_down(each / per_receiver, kLeastReceivers, kLeastReceivers, kMostReceivers);
   records_at_once_ = round_down(each / per_record, kLeastRecords, kLeastRecords, kMostRecords);

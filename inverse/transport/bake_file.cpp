@@ -7,6 +7,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_lock.h"
 #include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
@@ -69,20 +70,42 @@ std::unique_ptr<TransportCacheReader> open_unfinished(const fs::path& file) {
   }
 }
 
-std::unique_ptr<TransportCacheWriter> go_on(const fs::path& unfinished, const TransportCache& header, Range range,
-                                            Baker::Place& start, const renderer::Control& control) {
+// A bake that is being written, by this process alone.
+struct Unfinished {
+  renderer::FileLock lock;
+  std::unique_ptr<TransportCacheWriter> writer;
+};
+
+std::unique_ptr<TransportCacheWriter> begin_anew(const fs::path& unfinished, const TransportCache& header,
+                                                 Range range) {
+  return std::make_unique<TransportCacheWriter>(unfinished, header, range.first, range.last);
+}
+
+void go_on(const fs::path& unfinished, const TransportCache& header, Range range, Baker::Place& start,
+           const renderer::Control& control, Unfinished& bake) {
   const auto unfinished_cache = open_unfinished(unfinished);
-  if (!unfinished_cache) return std::make_unique<TransportCacheWriter>(unfinished, header, range.first, range.last);
+  if (!unfinished_cache) {
+    bake.writer = begin_anew(unfinished, header, range);
+    return;
+  }
   TransportCacheReader& old = *unfinished_cache;
   if (!old.is_of(header) || old.first_receiver() != range.first || old.last_receiver() != range.last) {
     throw Error({unfinished.string(), "header", "of another scene or of a bake with other options",
                  "the same again, or no --resume"});
   }
   const fs::path aside = unfinished.string() + ".new";
-  auto writer = std::make_unique<TransportCacheWriter>(aside, header, range.first, range.last);
-  start = take_over(old, range, *writer, control);
-  fs::rename(aside, unfinished);
-  return writer;
+  try {
+    Unfinished next{renderer::FileLock(aside), begin_anew(aside, header, range)};
+    start = take_over(old, range, *next.writer, control);
+    std::error_code renamed;
+    fs::rename(aside, unfinished, renamed);
+    if (renamed) throw Error({unfinished.string(), "", "cannot be written: " + renamed.message(), ""});
+    bake = std::move(next);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(aside, ignored);
+    throw;
+  }
 }
 
 std::vector<std::unique_ptr<TransportCacheReader>> open_shards(std::span<const fs::path> files) {
@@ -126,21 +149,22 @@ BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptio
   const Range range = receivers_of(options.shard, header);
   const fs::path unfinished = unfinished_bake(file);
   Baker::Place start{0, range.first};
-  std::unique_ptr<TransportCacheWriter> writer;
-  if (options.resume && fs::exists(unfinished)) {
-    writer = go_on(unfinished, header, range, start, control);
+  const bool goes_on = options.resume && fs::exists(unfinished);
+  Unfinished bake{renderer::FileLock(unfinished), nullptr};
+  if (goes_on) {
+    go_on(unfinished, header, range, start, control, bake);
   } else {
-    writer = std::make_unique<TransportCacheWriter>(unfinished, header, range.first, range.last);
+    bake.writer = begin_anew(unfinished, header, range);
   }
   double write_seconds = 0;
   const auto write = [&](const TransportBlock& block) {
     const auto begin = std::chrono::steady_clock::now();
-    writer->write(block);
+    bake.writer->write(block);
     write_seconds += renderer::seconds_since(begin);
   };
   baker.bake(range.first, range.last, start, write, control);
   const auto begin = std::chrono::steady_clock::now();
-  writer->close();
+  bake.writer->close();
   renderer::move_into_place(unfinished, file);
   BakeSummary summary = baker.summary();
   summary.write_seconds = write_seconds + renderer::seconds_since(begin);

@@ -23,7 +23,7 @@ std::filesystem::path unfinished_bake(const std::filesystem::path& file);
 
 // Writes the receivers of a shard, all lights, as they are baked, and puts the file in its place when it is whole. What
 // there is of an unfinished bake stays when it is interrupted or fails, and is gone on with if `resume`: the same bytes
-// come out. Error where that is of another bake, or the disk is full.
+// come out. Error where that is of another bake or being written by another process, or the disk is full.
 BakeSummary bake_to_file(Baker& baker, const std::filesystem::path& file, const BakeFileOptions& options,
                          const renderer::Control& control);
 

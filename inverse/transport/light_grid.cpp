@@ -8,6 +8,7 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -234,7 +235,12 @@ std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, con
 }
 
 Box3f parse_region(const renderer::Scene& scene, const std::string& text) {
-  if (const auto box = six_numbers(text)) return *box;
+  if (const auto box = six_numbers(text)) {
+    const bool within = renderer::in_world(box->min) && renderer::in_world(box->max);
+    if (within && box->diagonal() > 0) return *box;
+    throw Error({scene.path, "option --region", within ? "is a single point" : "reaches too far",
+                 fmt::format("a box within {:g} m of the origin", renderer::kWorldLimit)});
+  }
   Box3f box;
   for (const renderer::Instance& instance : scene.instances) {
     if (instance.name != text) continue;

@@ -21,6 +21,7 @@ constexpr double kLeastOfWanted = 2.0 / 3, kMostOfWanted = 5.0 / 3;
 constexpr float kShortestEdge = 1e-5F;  // of the scene's longest one
 constexpr double kMostReceivers = 3e7;
 constexpr float kNudge = 2e-5F;        // of the receivers' diagonal
+constexpr float kLeastNudge = 2;       // in what rounding may take a point off its face
 constexpr float kLongestNudge = 0.1F;  // of the way to the centroid of the face
 
 SurfaceMesh world_mesh(const renderer::Scene& scene, const renderer::Instance& instance) {
@@ -143,10 +144,10 @@ void place_samples(Receivers& r) {
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
   r.samples.resize(r.size());
   for (const Receivers::Part& part : r.parts) {
-    const float rounding = part_rounding(r, part);
+    const float rounding = part_rounding(r, part), off_edges = std::max(nudge, kLeastNudge * rounding);
     for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
       const Vec3f position =
-          face[i] == ~0U ? r.positions[i] : sample_position(r, i, r.triangles[face[i]], nudge, rounding);
+          face[i] == ~0U ? r.positions[i] : sample_position(r, i, r.triangles[face[i]], off_edges, rounding);
       r.samples[i] = {position, r.normals[i]};
     }
   }

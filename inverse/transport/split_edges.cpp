@@ -23,10 +23,15 @@ class Midpoints {
   Midpoints(SurfaceMesh& mesh, float max_edge) : mesh_(mesh), max_squared_(max_edge * max_edge) {}
 
   std::uint32_t of(std::uint32_t a, std::uint32_t b) {
-    if (!(length_squared(mesh_.positions[a] - mesh_.positions[b]) > max_squared_)) return kNone;
+    const Vec3f from = mesh_.positions[a], to = mesh_.positions[b], middle = 0.5F * (from + to);
+    const float squared = length_squared(from - to);
+    if (!(squared > max_squared_)) return kNone;
+    // Ends that are neighbours among floats have nothing between them, and would be split for ever.
+    constexpr float kLongestHalf = 0.75F * 0.75F;
+    if (std::max(length_squared(middle - from), length_squared(middle - to)) > kLongestHalf * squared) return kNone;
     const auto [found, added] = middle_.try_emplace(edge_key(a, b), std::uint32_t(mesh_.positions.size()));
     if (added) {
-      mesh_.positions.push_back(0.5F * (mesh_.positions[a] + mesh_.positions[b]));
+      mesh_.positions.push_back(middle);
       const Vec3f n = mesh_.normals[a] + mesh_.normals[b];
       mesh_.normals.push_back(length_squared(n) > 1e-12F ? normalize(n) : mesh_.normals[a]);
     }

@@ -45,17 +45,19 @@ void move_into_place(const std::filesystem::path& aside, const std::filesystem::
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write) {
   const std::filesystem::path folder = folder_of(path);
-  if (!std::filesystem::is_directory(folder)) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) {
     throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
   }
-  if (std::filesystem::is_directory(path)) throw Error({path.string(), "", "is a folder", "the name of a file"});
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw Error({path.string(), "", "is a folder", "the name of a file"});
+  }
   const std::filesystem::path aside =
       folder / fmt::format(".{}.{}.part{}", path.stem().string(), ::getpid(), path.extension().string());
   try {
     write(aside);
     move_into_place(aside, path);
   } catch (...) {
-    std::error_code ignored;
     std::filesystem::remove(aside, ignored);
     throw;
   }
@@ -71,8 +73,16 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 }
 
 std::string read_file(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) throw Error({path.string(), "", "no such file", ""});
-  if (std::filesystem::is_directory(path)) throw Error({path.string(), "", "is a folder", "a file"});
+  std::error_code failed;
+  const std::filesystem::file_status status = std::filesystem::status(path, failed);
+  if (!std::filesystem::exists(status)) {
+    const bool missing = status.type() == std::filesystem::file_type::not_found;
+    throw Error({path.string(), "", missing ? "no such file" : "cannot be read: " + failed.message(), ""});
+  }
+  if (std::filesystem::is_directory(status)) throw Error({path.string(), "", "is a folder", "a file"});
+  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
+    throw Error({path.string(), "", "is a device", "a file"});
+  }
   std::ifstream stream(path, std::ios::binary);
   std::error_code no_size;  // as pipes have none
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);

@@ -1,5 +1,5 @@
 #pragma once
-// How large a world may be.
+// How large, and how bright, a world may be.
 
 #include <cmath>
 
@@ -9,6 +9,9 @@ namespace chiaro::renderer {
 
 // Metres from the origin, along any axis; fourth powers of distances remain floats.
 inline constexpr float kWorldLimit = 1e9F;
+
+// Candela, lux or cd/m² of anything that gives light, and of what is wanted of it: a sun at the world's end.
+inline constexpr float kBrightest = 1e24F;
 
 inline bool in_world(Vec3f point) {
   return std::abs(point.x) <= kWorldLimit && std::abs(point.y) <= kWorldLimit && std::abs(point.z) <= kWorldLimit;

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <limits>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
@@ -169,15 +170,33 @@ void check_channels(const Image& image, const std::filesystem::path& path, const
   }
 }
 
-void write(const Image& image, const std::filesystem::path& aside, const OIIO::ImageSpec& spec,
-           OIIO::ImageOutput& output) {
+void write(const Image& image, const std::string& name, const OIIO::ImageSpec& spec, OIIO::ImageOutput& output) {
   const bool half = spec.format == OIIO::TypeHalf || !spec.channelformats.empty();
   const std::vector<float> clamped = half ? clamped_to_half(image.pixels, spec) : std::vector<float>{};
   const float* pixels = half ? clamped.data() : image.pixels.data();
-  const bool written = output.open(aside.string(), spec) && output.write_image(OIIO::TypeFloat, pixels);
+  const bool written = output.open(name, spec) && output.write_image(OIIO::TypeFloat, pixels);
   if (!output.close() || !written) {
-    throw Error({aside.string(), "", fmt::format("cannot be written: {}", first_line(output.geterror())), ""});
+    throw Error({name, "", fmt::format("cannot be written: {}", first_line(output.geterror())), ""});
   }
+}
+
+// Encoded in memory where the library can: of its own files, what a full disk does not take is lost without a word.
+void write_through_memory(const Image& image, const std::filesystem::path& path, const OIIO::ImageSpec& spec,
+                          OIIO::ImageOutput& output) {
+  OIIO::Filesystem::IOVecOutput memory;
+  if (output.supports("ioproxy") && output.set_ioproxy(&memory)) {
+    write(image, path.string(), spec, output);
+    write_file_atomically(path, {reinterpret_cast<const char*>(memory.buffer().data()), memory.buffer().size()});
+    return;
+  }
+  write_atomically(path, [&](const std::filesystem::path& aside) {
+    try {
+      write(image, aside.string(), spec, output);
+      load_image(aside);
+    } catch (const Error& error) {
+      throw Error({path.string(), "", error.parts().problem, ""});
+    }
+  });
 }
 
 ImageFile read_image(const std::filesystem::path& path) {
@@ -219,13 +238,7 @@ void save_image(const Image& image, const std::filesystem::path& path, const Cha
   check_channels(image, path, *output);
   CHIARO_CHECK(types.size() == image.channel_names.size());
   const OIIO::ImageSpec spec = spec_of(image, types, attributes);
-  write_atomically(path, [&](const std::filesystem::path& aside) {
-    try {
-      write(image, aside, spec, *output);
-    } catch (const Error& error) {
-      throw Error({path.string(), "", error.parts().problem, ""});
-    }
-  });
+  write_through_memory(image, path, spec, *output);
 }
 
 }  // namespace chiaro::renderer

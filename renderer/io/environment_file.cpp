@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 #include "renderer/image/scene_linear.h"
 
 namespace chiaro::renderer {
@@ -20,7 +21,8 @@ void check_size(const Image& header, const std::string& file) {
 
 // Saturated colours of wider spaces are a little negative in Rec.709, which is no fault of the file.
 bool is_mendable_rounding(Vec3f color) {
-  return is_finite(color) && min_component(color) >= -0.25F * max_component(color);
+  return max_component(color) <= kBrightest && is_finite(color) &&
+         min_component(color) >= -0.25F * max_component(color);
 }
 
 float mended(float value) { return std::isnan(value) ? 0 : std::clamp(value, 0.0F, kMaxHalf); }
@@ -37,10 +39,11 @@ void warn_of_shape(const EnvironmentMap& map, const std::string& file, std::vect
 std::size_t mend_pixels(EnvironmentMap& map) {
   std::size_t count = 0;
   for (Vec3f& color : map.pixels) {
-    if (is_finite(color) && min_component(color) >= 0) continue;
+    if (min_component(color) >= 0 && max_component(color) <= kBrightest && is_finite(color)) continue;
     if (!is_mendable_rounding(color)) ++count;
     for (int c = 0; c < 3; ++c) {
       if (!std::isfinite(color[c]) || color[c] < 0) color[c] = mended(color[c]);
+      color[c] = std::min(color[c], kBrightest);
     }
   }
   return count;
@@ -52,7 +55,8 @@ EnvironmentLight load_environment(const std::filesystem::path& path, std::vector
   const ImageFile image = load_image(path);
   EnvironmentMap map{image.image.width, image.image.height, scene_linear_rec709(image, file)};
   if (const std::size_t count = mend_pixels(map); count > 0) {
-    warnings.push_back(fmt::format("{}: {} pixels are negative or not finite; they are mended", file, count));
+    warnings.push_back(
+        fmt::format("{}: {} pixels are negative, not finite or too bright; they are mended", file, count));
   }
   const bool dark = std::all_of(map.pixels.begin(), map.pixels.end(), [](Vec3f p) { return !(max_component(p) > 0); });
   if (dark) throw Error({file, "pixels", "are all black", "an environment that gives light"});

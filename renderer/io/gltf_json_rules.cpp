@@ -1,5 +1,7 @@
 #include "renderer/io/gltf_json_rules.h"
 
+#include "renderer/core/world_limits.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -220,8 +222,8 @@ constexpr JsonRule kRules[] = {
     number("cameras.[].perspective.zfar", 0),
     number("cameras.[].perspective.aspectRatio", 1e-6, 1e6),
     {"cameras.[].orthographic", kObject},
-    number("cameras.[].orthographic.xmag", -kLargest, kLargest, kRequired),
-    number("cameras.[].orthographic.ymag", -kLargest, kLargest, kRequired),
+    number("cameras.[].orthographic.xmag", -kWorldLimit, kWorldLimit, kRequired),
+    number("cameras.[].orthographic.ymag", -kWorldLimit, kWorldLimit, kRequired),
     number("cameras.[].orthographic.znear", 0, kLargest, kRequired),
     number("cameras.[].orthographic.zfar", 0, kLargest, kRequired),
 

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include "renderer/core/world_limits.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -23,6 +25,9 @@ Vec3f intensity_of(const GltfDocument& document, int index) {
   const Vec3f intensity{float(color[0] * light.intensity), float(color[1] * light.intensity),
                         float(color[2] * light.intensity)};
   if (!is_finite(intensity)) fail(document, light_place(index), "its intensity is not finite");
+  if (max_component(intensity) > kBrightest) {
+    fail(document, light_place(index), "its intensity is too bright", fmt::format("at most {:g}", kBrightest));
+  }
   return intensity;
 }
 

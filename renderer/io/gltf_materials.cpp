@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include "renderer/core/world_limits.h"
 #include "renderer/io/gltf_material_layers.h"
 #include "renderer/io/gltf_textures.h"
 
@@ -37,6 +38,10 @@ Vec3f emission(const GltfMaterialReader& reader, const tinygltf::Material& mater
   const auto& f = material.emissiveFactor;
   const Vec3f result{float(f[0] * strength), float(f[1] * strength), float(f[2] * strength)};
   if (!is_finite(result)) fail(reader.document, reader.place + ".emissiveFactor", "its emission is not finite");
+  if (max_component(result) > kBrightest) {
+    fail(reader.document, reader.place + ".emissiveFactor", "its emission is too bright",
+         fmt::format("at most {:g} cd/m²", kBrightest));
+  }
   return result;
 }
 

@@ -61,6 +61,9 @@ Vec3f read_intensity(const Entry& entry, const char* unit) {
   const std::string expected = fmt::format("three numbers, not negative, {}", unit);
   const Vec3f intensity = read_vec3(entry, "intensity", expected);
   if (min_component(intensity) < 0) fail(entry, "intensity", "is negative", expected);
+  if (max_component(intensity) > kBrightest) {
+    fail(entry, "intensity", "is too bright", fmt::format("at most {:g} {}", kBrightest, unit));
+  }
   return intensity;
 }
 

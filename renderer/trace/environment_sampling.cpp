@@ -59,8 +59,8 @@ float EnvironmentSampling::top_cosine(int row) const {
 float EnvironmentSampling::cell_luminance(int column, int row) const {
   const int next = column + 1 < map_.width ? column + 1 : 0;
   const int above = std::max(row - 1, 0), below = std::min(row, map_.height - 1);
-  return 0.25F *
-         luminance(map_.at(column, above) + map_.at(next, above) + map_.at(column, below) + map_.at(next, below));
+  return luminance(0.25F * map_.at(column, above) + 0.25F * map_.at(next, above) + 0.25F * map_.at(column, below) +
+                   0.25F * map_.at(next, below));
 }
 
 void EnvironmentSampling::make_density(float taken_off) {

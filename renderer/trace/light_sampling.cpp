@@ -69,7 +69,7 @@ SpotCone spot_cone(const SpotLight& light) {
 }
 
 SpotCone::Falloff SpotCone::falloff(float cosine) const {
-  const float width = std::max(1e-3F, cos_inner - cos_outer);
+  const float width = std::max(kNarrowestFall, cos_inner - cos_outer);
   const float t = std::clamp((cosine - cos_outer) / width, 0.0F, 1.0F);
   return {t * t, t > 0 && t < 1 ? 2 * t / width : 0};
 }

@@ -18,6 +18,7 @@ struct PunctualSample {
 };
 
 // A spot's light by the cosine of the angle from its axis: KHR_lights_punctual's recommended falloff.
+inline constexpr float kNarrowestFall = 1e-7F;  // of cosines, from the inner cone to the outer
 struct SpotCone {
   Vec3f axis;  // unit, from the light outwards
   float cos_inner, cos_outer;

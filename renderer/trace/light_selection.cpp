@@ -148,7 +148,7 @@ void LightSelection::set_lane(const Light& light, std::size_t lane, LightLanes& 
   lanes.x[lane] = at.x, lanes.y[lane] = at.y, lanes.z[lane] = at.z;
   lanes.axis_x[lane] = axis.x, lanes.axis_y[lane] = axis.y, lanes.axis_z[lane] = axis.z;
   lanes.cos_outer[lane] = outer;
-  lanes.fall[lane] = 1 / std::max(1e-3F, inner - outer);
+  lanes.fall[lane] = 1 / std::max(kNarrowestFall, inner - outer);
   lanes.intensity[lane] = max_component(spot != nullptr ? spot->intensity : point->intensity);
 }
 

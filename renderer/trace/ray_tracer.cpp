@@ -220,8 +220,11 @@ struct RayTracer::Embree {
 RayTracer::RayTracer(const Scene& scene)
     : scene_(scene), bounds_(chiaro::renderer::bounds(scene)), embree_(std::make_unique<Embree>()) {
   embree_->device = rtcNewDevice(nullptr);
-  if (embree_->device == nullptr)
-    throw Error({"", "ray tracer", "Embree cannot be started", "a CPU that Embree supports"});
+  if (embree_->device == nullptr) {
+    const bool full = rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY;
+    throw Error({"", "ray tracer", full ? "not enough memory" : "Embree cannot be started",
+                 full ? "" : "memory, and a CPU that Embree supports"});
+  }
   embree_->root = embree_->make_scene();
   embree_->mesh_scenes.assign(scene.meshes.size(), nullptr);
   for (const Mesh& mesh : scene.meshes) embree_->users.push_back({&scene, &mesh});

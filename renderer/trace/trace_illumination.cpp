@@ -64,10 +64,13 @@ Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32
     means[b] = (light.direct + light.indirect) / float(sampling.samples_of(b));
     mean += means[b] / float(batches);
   }
-  Vec3f variance;
-  for (int b = 0; b < batches; ++b) variance += (means[b] - mean) * (means[b] - mean);
-  if (batches > 1) variance = variance / float(batches * (batches - 1));
-  return {exact.direct + mean, {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)}};
+  Vec3f error;
+  for (int c = 0; c < 3; ++c) {
+    double variance = 0;
+    for (int b = 0; b < batches; ++b) variance += std::pow(double(means[b][c]) - double(mean[c]), 2);
+    error[c] = batches > 1 ? float(std::sqrt(variance / (batches * (batches - 1)))) : 0;
+  }
+  return {exact.direct + mean, error};
 }
 
 std::vector<Vec3f> estimate_per_light(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream) {

@@ -54,5 +54,15 @@ TEST_F(CliOutputPaths, NamesOfUsersBecomeFileNames) {
   EXPECT_EQ(file_name_of("Küche"), "Küche");
 }
 
+TEST_F(CliOutputPaths, OutputsNeverTakeThePlaceOfInputsOrOfEachOther) {
+  fs::create_directories(folder_ / "b");
+  folder_.write("a.glb", "x");
+  fs::create_symlink(folder_ / "a.glb", folder_ / "link.glb");
+  EXPECT_THROW(require_apart({folder_ / "a.glb"}, {folder_ / "b/../a.glb"}), renderer::Error);
+  EXPECT_THROW(require_apart({}, {folder_ / "c.glb", folder_ / "b/../c.glb"}), renderer::Error);
+  EXPECT_NO_THROW(require_apart({folder_ / "a.glb", ""}, {folder_ / "b/a.glb", folder_ / "a.json", ""}));
+  EXPECT_NO_THROW(require_apart({folder_ / "a.glb"}, {folder_ / "link.glb"}));  // the link itself is replaced
+}
+
 }  // namespace
 }  // namespace chiaro::cli

@@ -348,5 +348,14 @@ TEST(PaintMirrored, PathAndMirrorImageAreOneStroke) {
   }
 }
 
+TEST(PaintAlongSurface, ARadiusBeyondAllThereIsTouchesAllThatHangsTogether) {
+  for (const float radius : {10.0F, 1e3F, 1e9F}) {
+    Stroke stroke = middle_dab(BrushMode::kSet, BrushFalloff::kHard);
+    stroke.radius = radius;
+    const Target floor = make_target(make_floor(), kBase);
+    EXPECT_EQ(paint(floor, {StrokeBase::kCurrent, {stroke}}, {}).touched[0], floor.receivers.size()) << radius;
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::inverse

@@ -184,6 +184,21 @@ TEST(Receivers, NoneIsHiddenByItsOwnPlaneWhateverItsSize) {
   }
 }
 
+// A closed room and a light in its middle: none of its receivers lies in a neighbouring wall.
+TEST(Receivers, NoneIsHiddenByTheNextWallHoweverFarFromTheOrigin) {
+  for (const float far : {0.0F, 1e3F, 1e4F, 3e4F}) {
+    Scene scene;
+    renderer::Mesh room = test::room({3, 2, 4}, 4);
+    for (Vec3f& p : room.positions) p = p + Vec3f{far, -0.7F * far, 0.3F * far};
+    test::add_mesh(scene, room, test::lambert({1, 1, 1}), "room");
+    const RayTracer tracer(scene);
+    const Receivers receivers = make_receivers(scene, {.max_edge = 0.2F});
+    const renderer::PointLight light{"", tracer.bounds().center(), {1, 1, 1}};
+    const auto lit = trace_illumination(tracer, receivers.samples, {light}, {.samples = 1, .bounces = 0});
+    EXPECT_EQ(std::count(lit.value.begin(), lit.value.end(), Vec3f{}), 0) << far << " m, of " << receivers.size();
+  }
+}
+
 TEST(Receivers, OfAnotherSceneAreToldByTheirPlaces) {
   const Scene scene = test::corner_with_ball(), other = own_scene("cornell.glb");
   const RayTracer tracer(scene), other_tracer(other);

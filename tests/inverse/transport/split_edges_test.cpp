@@ -1,5 +1,6 @@
 #include "inverse/transport/split_edges.h"
 
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -143,6 +144,14 @@ TEST(SplitEdges, CountingEndsBeyondTheLimit) {
   for (const SurfaceMesh& mesh : samples()) EXPECT_GT(vertices_after_split(mesh, 1e-7F, 1e6), 1e6);
   const SurfaceMesh vast = surface(test::rectangle({0, 0, 0}, {3e38F, 0, 0}, {0, 3e38F, 0}));
   EXPECT_GT(vertices_after_split(vast, 1e-7F, 1e6), 1e6);
+}
+
+// Between neighbours among floats there is no middle, and edges that stay as long as they are would be split for ever.
+TEST(SplitEdges, EndsWhereFloatsHaveNothingBetween) {
+  const float far = 1e6F, next = std::nextafter(far, 2 * far);
+  SurfaceMesh sliver{{{far, 0, 0}, {next, 0, 0}, {far, 0.01F, 0}}, std::vector<Vec3f>(3, Vec3f{0, 0, 1}), {{0, 1, 2}}};
+  split_long_edges(sliver, 0.02F);
+  EXPECT_EQ(sliver.positions.size(), 3U);
 }
 
 }  // namespace

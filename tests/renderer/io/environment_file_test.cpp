@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/core/world_limits.h"
 #include "renderer/image/image_file.h"
 #include "renderer/io/light_file.h"
 #include "renderer/io/save_gltf.h"
@@ -76,7 +77,7 @@ TEST(EnvironmentFile, MendsPixelsThatAreNoLight) {
   std::vector<std::string> warnings;
   const EnvironmentLight light = load_environment(folder / "sky.exr", warnings);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("3 pixels are negative or not finite"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("3 pixels are negative, not finite or too bright"), std::string::npos) << warnings[0];
   EXPECT_EQ(light.map->at(0, 0), (Vec3f{0, 1, 1}));
   EXPECT_EQ(light.map->at(1, 0), (Vec3f{1, 65504, 1}));
   EXPECT_EQ(light.map->at(2, 0), (Vec3f{1, 1, 0}));
@@ -157,6 +158,15 @@ INSTANTIATE_TEST_SUITE_P(
                     BadEnvironment{"Degrees", R"("image":"sky.exr","rotation":90)", "-2π to 2π radians"},
                     BadEnvironment{"Negative", R"("image":"sky.exr","intensity":-1)", "lights[0].intensity: is -1"}),
     test::kByName);
+
+TEST(EnvironmentFile, PixelsBeyondAllMeasureAreMendedAndSampled) {
+  const TemporaryFolder folder;
+  save_image(grey_image(4, 2, 3e38F), folder / "sky.exr", PixelType::kFloat);
+  std::vector<std::string> warnings;
+  const EnvironmentLight light = load_environment(folder / "sky.exr", warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(light.map->at(1, 1).x, kBrightest);
+}
 
 }  // namespace
 }  // namespace chiaro::renderer::tests

@@ -91,6 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "position: is not finite"},
         BadLights{"BeyondTheWorld", R"({"lights":[{"position":[1,-2e9,3],"intensity":[1,1,1]}]})",
                   "lights[0].position: is too far away (expected within 1e+09 m of the origin)"},
+        BadLights{"TooBright", R"({"lights":[{"position":[1,2,3],"intensity":[1,1e25,1]}]})",
+                  "lights[0].intensity: is too bright (expected at most 1e+24 candela)"},
         BadLights{"InfiniteAsDouble", R"({"lights":[{"position":[1,2,1e999],"intensity":[1,1,1]}]})", "out of range"},
         BadLights{"NegativeIntensity", R"({"lights":[{"position":[1,2,3],"intensity":[1,-1,1]}]})",
                   "lights[0].intensity: is negative"},

@@ -194,5 +194,12 @@ TEST(SamplePunctual, FollowsTheInverseSquareAndStaysFinite) {
   EXPECT_EQ(sample_punctual(DirectionalLight{"", {0, -1, 0}, {1, 2, 3}}, {9, 9, 9}).distance, kInfinity);
 }
 
+TEST(SamplePunctual, NarrowSpotsAreFullOnTheirAxis) {
+  for (const float outer : {1.0F, 0.1F, 0.03F, 0.01F}) {
+    const Light spot = SpotLight{"", {0, 0, 0}, {0, 0, -1}, {5, 5, 5}, 0.9F * outer, outer};
+    EXPECT_NEAR(sample_punctual(spot, {0, 0, -1}).irradiance.x, 5, 1e-4) << outer;
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::renderer

@@ -1,0 +1,48 @@
+#include "renderer/core/file_lock.h"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "renderer/core/error.h"
+
+namespace chiaro::renderer {
+namespace {
+
+// It may have been renamed between being opened and being locked.
+bool is_still(int file, const std::filesystem::path& path) {
+  struct stat held {
+  }, named{};
+  return fstat(file, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+         held.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+FileLock::FileLock(const std::filesystem::path& path)
+    : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  if (file_ < 0) throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0 && is_still(file_, path)) return;
+  ::close(file_);
+  throw Error({path.string(), "", "another process is writing it", "its end, or another output"});
+}
+
+FileLock::~FileLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+FileLock::FileLock(FileLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+  std::swap(file_, other.file_);
+  return *this;
+}
+
+}  // namespace chiaro::renderer

@@ -1,0 +1,21 @@
+#pragma once
+// One process at a time works on a file.
+
+#include <filesystem>
+
+namespace chiaro::renderer {
+
+// Holds `path`, which is made where it is missing, until it goes; under whatever name the file is by then. Error where
+// another process holds it.
+class FileLock {
+ public:
+  explicit FileLock(const std::filesystem::path& path);
+  ~FileLock();
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+
+ private:
+  int file_;
+};
+
+}  // namespace chiaro::renderer
