@@ -154,12 +154,20 @@ void make_folders(const RunCommand& options) {
   make_folder(options.folder() / "pictures");
 }
 
+void require_inputs_elsewhere(const RunCommand& options) {
+  const std::filesystem::path folder = options.folder();
+  require_apart({options.scene, options.choices.target.file, options.choices.constraint_options.file},
+                {folder / "lights.glb", folder / "lights.json", folder / "found.glb", folder / "cache.exr",
+                 folder / "summary.json"});
+}
+
 int run_run(RunCommand options) {
   Session session(options.common);
   options.choices.target.encoding.view = options.frame.view;
   require_a_target(options.choices.target);
   settle_constraints(options.choices);
   require_not_a_file(options.folder());
+  require_inputs_elsewhere(options);
   require_color_choices(options.frame, true);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);

@@ -6,17 +6,15 @@
 #include <numeric>
 #include <optional>
 
-#include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/important_vertices.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/optimize_jointly.h"
 #include "inverse/solve/optimize_simplex.h"
-#include "inverse/solve/polish_lights.h"
 #include "inverse/solve/prepare_transport.h"
-#include "inverse/solve/refine_over_many.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/solve/traced_light.h"
@@ -28,16 +26,8 @@ namespace {
 
 using renderer::Error;
 
-constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
-constexpr std::size_t kHeldOut = 1500;            // receivers that tell how many lights there are
-constexpr int kFixedSamples = 512;                // per important vertex
-constexpr int kFixedSamplesOfMany = 32;           // per receiver of the last refinement …
-constexpr std::size_t kMany = 50000;              // … of so many at most
-constexpr double kExplained = 1.5;      // times the noise of the target, or less: more receivers hardly tell more
-constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood
-constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
-constexpr double kNegligible = 1e-3;    // contribution to the target's norm
-constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
+constexpr int kFixedSamples = 512;      // per important vertex
+constexpr std::size_t kHeldOut = 1500;  // receivers that tell how many lights there are
 constexpr double kOnSurface = 0.5;      // of a target's receivers must lie on the scene
 
 void check_target(const SolveProblem& problem) {
@@ -47,11 +37,6 @@ void check_target(const SolveProblem& problem) {
                fmt::format("only {:.0f} % of the target's vertices lie on the scene: it is a target of another scene",
                            100 * fraction),
                "a target on this scene's surfaces"});
-}
-
-// Rules that speak of more than a light's place.
-bool ties_lights_together(const SolveProblem& problem) {
-  return problem.intensities.any() || problem.places.light_distance > 0;
 }
 
 std::vector<std::size_t> all_indices(std::size_t count) {
@@ -93,51 +78,6 @@ void report_lights(const LightResponse& response, const Observations& observatio
   for (const auto& [j, k] : intervals.confounded) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
 }
 
-struct Optimum {
-  LightEstimates lights;
-  LightEstimates start;  // before the last optimisation
-  std::string termination;
-  std::vector<int> cut;  // of the light tree, nodes
-  std::vector<LightSet> error_curve{};
-};
-
-LightEstimates joined(LightEstimates some, const LightEstimates& others) {
-  some.insert(some.end(), others.begin(), others.end());
-  return some;
-}
-
-std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
-                                     const LightEstimates& beside_surfaces, const LightCountResult& count) {
-  std::vector<LightSet> curve;
-  for (const LightEstimates& set : count.sets) {
-    if (set.empty()) continue;
-    const LightEstimates all = joined(beside_surfaces, set);
-    LightSet& best = curve.emplace_back();
-    for (const LightEstimate& light : all) best.lights.push_back(point_light(light));
-    best.relative_l2 = relative_error(judged, illumination_of(response, all));
-  }
-  return curve;
-}
-
-int most_lights(const SolveOptions& options) {
-  return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
-}
-
-// Without the lights that the last descent left with less than what anybody sees of them, and those that make good
-// what is wrong with one receiver, and stand no one can tell where; one always stays.
-LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
-                                  const LightEstimates& lights) {
-  const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
-  const std::vector<LightInterval> intervals = light_intervals(response, judged, lights).lights;
-  LightEstimates kept;
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
-    const bool nowhere = !intervals[j].position.array().isFinite().any();
-    if (norm > (nowhere ? kHardlySeen : kNegligible) * judged.target_norm) kept.push_back(lights[j]);
-  }
-  return kept.empty() ? lights : kept;
-}
-
 // Sections 3.4.2 and 3.4.3.
 Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
                               const SolveOptions& options, StageClock& clock) {
@@ -151,155 +91,6 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
   return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light",
           cut.nodes};
-}
-
-struct JointSearch {
-  const SolveProblem& problem;
-  const SolveOptions& options;
-  const renderer::Control& control;
-  const LightResponse& response;
-  const ExactIndirect& exact;
-  const Observations& searched;  // no receiver hides the light of all others
-  const Observations& judged;    // as the objective judges them
-  const Observations& reported;  // as (3.6) judges them
-  const HeldOut* held_out;       // absent where lights beside surfaces were found
-};
-
-// The lights refined over many receivers. Those beside surfaces, whose neighbours may not be among the many, stay.
-LightEstimates refined_over_many(const JointSearch& search, const LightEstimates& lights,
-                                 const LightEstimates& beside_surfaces, StageClock& clock) {
-  const SolveProblem& problem = search.problem;
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const auto samples = samples_at(problem.target, draw.chosen);
-  const TransportCache direct = direct_transport(search.response.grid(), samples.size());
-  const LightResponse response(problem.tracer, samples, direct, search.response.places());
-  Observations observations = observe_target(
-      problem.target, draw, fixed_illumination(problem, samples, kFixedSamplesOfMany, search.options, search.control));
-  if (!beside_surfaces.empty()) observations = with_capped_weights(observations);
-  BakeSettings settings = search.exact.settings();
-  settings.seed = fresh_seed(search.options.seed, 4);
-  PolishedLights refined =
-      refine_over_many({problem.tracer, response, observations, settings, search.control}, lights, beside_surfaces);
-  search.exact.correct(search.response, refined.lights);
-  clock.finish("refinement_over_many",
-               {{"receivers", double(samples.size())}, {"rounds", refined.rounds}, {"relative_l2", refined.error}});
-  return joined(beside_surfaces, refined.lights);
-}
-
-renderer::Lights point_lights(const LightEstimates& lights) {
-  renderer::Lights placed;
-  for (const LightEstimate& light : lights) placed.emplace_back(point_light(light));
-  return placed;
-}
-
-// Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
-// important ones, and robust weights would not see it. Where no lights explain the target those may also speak for a
-// light that is none to all others: sets of fewer lights are refitted as well.
-LightEstimates best_over_many(const JointSearch& search, const LightEstimates& lights,
-                              const std::vector<LightEstimates>& sets, StageClock& clock) {
-  if (lights.empty()) return lights;
-  std::vector<LightEstimates> candidates{lights};
-  const std::size_t fewest = search.options.exact_lights > 0 ? lights.size() : 1;
-  for (std::size_t size = std::min(lights.size() - 1, sets.size()); size >= fewest; --size) {
-    if (!sets[size - 1].empty()) candidates.push_back(sets[size - 1]);
-  }
-  std::vector<renderer::Lights> placed;
-  for (const LightEstimates& candidate : candidates) placed.push_back(point_lights(candidate));
-  const std::vector<PlacedFit> fits = refit_over_many(search.problem, placed, search.options, search.control);
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < fits.size(); ++k) {
-    if (fits[k].error <= kWorthALight * fits[best].error) best = k;
-  }
-  LightEstimates refitted = candidates[best];
-  for (std::size_t j = 0; j < refitted.size(); ++j) refitted[j].intensity = fits[best].intensity[j];
-  clock.finish("intensities_over_many", {{"lights", double(refitted.size())}, {"relative_l2", fits[best].error}});
-  return refitted;
-}
-
-// Those of the number asked for, or no more than that.
-std::vector<LightEstimates> earlier_sets(const SolveOptions& options) {
-  std::vector<LightEstimates> sets;
-  for (const LightSet& set : options.earlier) {
-    const int count = int(set.lights.size());
-    if (count > options.max_lights || (options.exact_lights > 0 && count != options.exact_lights)) continue;
-    LightEstimates& lights = sets.emplace_back();
-    for (const renderer::PointLight& light : set.lights) {
-      lights.push_back({to_eigen(light.position), to_eigen(light.intensity).array()});
-    }
-  }
-  return sets;
-}
-
-// A light that would do nothing is the half of another that stands where it stood.
-LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
-  while (!lights.empty() && lights.size() < count) {
-    const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
-      return a.intensity.sum() < b.intensity.sum();
-    });
-    brightest->intensity /= 2;
-    lights.push_back(*brightest);
-  }
-  return lights;
-}
-
-Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
-                         StageClock& clock) {
-  const SolveOptions& options = search.options;
-  const LightResponse& response = search.response;
-  const int already = int(beside_surfaces.size());
-  Observations remaining = less(search.searched, response, beside_surfaces);
-  remaining.rules = {};
-  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
-                               options.max_lights - already};
-  const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
-  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  const LightEstimates start = joined(beside_surfaces, cut.lights);
-  remaining.rules = search.problem.intensities;
-
-  const LightCountOptions count_options{options.max_lights - already,
-                                        std::max(0, options.exact_lights - already),
-                                        options.time_limit,
-                                        &search.exact,
-                                        search.held_out,
-                                        earlier_sets(options)};
-  const auto find_the_rest = [&] {
-    if (already >= most_lights(options)) return LightCountResult{};
-    return choose_light_count(response, remaining, tree, count_options);
-  };
-  LightCountResult count = find_the_rest();
-  if (already > 0) {
-    // What was found first was found beside the light of all others.
-    beside_surfaces =
-        refine_lights_beside_surfaces(response, search.exact, search.judged, beside_surfaces, count.lights);
-    remaining = less(search.searched, response, beside_surfaces);
-    count = find_the_rest();
-  }
-  const std::vector<LightSet> error_curve = error_curve_of(response, search.reported, beside_surfaces, count);
-  clock.finish("joint_refinement",
-               {{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}});
-  // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
-  // blind to all others.
-  const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
-  const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
-  clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
-  const auto at_last = [&] {
-    if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
-    const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
-    if (far) return best_over_many(search, polished.lights, count.sets, clock);
-    if (ties_lights_together(search.problem)) {
-      return best_over_many(search, joined(beside_surfaces, polished.lights), {}, clock);
-    }
-    return refined_over_many(search, polished.lights, beside_surfaces, clock);
-  };
-  const LightEstimates all = at_last();
-  const bool may_share_places = !(search.problem.places.light_distance > 0);
-  const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
-  return {options.exact_lights > 0 ? exactly : without_negligible(response, search.judged, all), start,
-          count.out_of_time          ? "time limit"
-          : options.exact_lights > 0 ? "as many lights as asked for"
-                                     : "no further light explains more",
-          cut.nodes, error_curve};
 }
 
 [[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {

@@ -10,7 +10,7 @@ namespace {
 // From this vertex on a path survives with the probability of its throughput, at most kMostSurvival so that it ends
 // among surfaces of albedo 1 too.
 constexpr int kRouletteVertex = 3;
-constexpr float kMostSurvival = 0.95F;
+constexpr float kMostSurvival = 0.995F;
 
 // Light subpaths are as long as this part of the scene's diagonal at most. Their business is the bright spot close to a
 // light; farther away scattered rays find as much, for less.

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "inverse/solve/exact_indirect.h"
+#include "inverse/solve/held_out.h"
+#include "inverse/solve/light_clusters.h"
+#include "inverse/solve/solve.h"
+#include "inverse/solve/stage_clock.h"
+
+namespace chiaro::inverse {
+
+inline constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, before the last optimisation
+
+// The lights of a search, by either method.
+struct Optimum {
+  LightEstimates lights;
+  LightEstimates start;  // before the last optimisation
+  std::string termination;
+  std::vector<int> cut;  // of the light tree, nodes
+  std::vector<LightSet> error_curve{};
+};
+
+// What is known before the search.
+struct JointSearch {
+  const SolveProblem& problem;
+  const SolveOptions& options;
+  const renderer::Control& control;
+  const LightResponse& response;
+  const ExactIndirect& exact;
+  const Observations& searched;  // no receiver hides the light of all others
+  const Observations& judged;    // as the objective judges them
+  const Observations& reported;  // as (3.6) judges them
+  const HeldOut* held_out;       // absent where lights beside surfaces were found
+};
+
+// At most, or exactly where so many are asked for.
+int most_lights(const SolveOptions& options);
+
+// Rules that speak of more than a light's place.
+bool ties_lights_together(const SolveProblem& problem);
+
+// Sets of an earlier solve that serve: those of the number asked for, or no more than that.
+std::vector<LightEstimates> earlier_sets(const SolveOptions& options);
+
+// From a cut of the tree to the number of lights, where they stand and how bright they are: insertion, joint descent,
+// elimination (choose_light_count.h), and refinement over many receivers. `beside_surfaces`: lights found before, which
+// stay.
+Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
+                         StageClock& clock);
+
+}  // namespace chiaro::inverse
