@@ -91,6 +91,20 @@ float default_max_edge(const std::vector<SurfaceMesh>& meshes) {
   return below >= least && (below_is_nearer || above > most) ? longest : shortest;
 }
 
+// Between neighbours among floats no edge can be split.
+void check_spacing(const renderer::Scene& scene, float max_edge) {
+  constexpr float kLeastEdge = 4;
+  const Box3f box = renderer::bounds(scene);
+  const float largest = max_component(max(abs(box.min), abs(box.max)));
+  const float spacing = std::nextafter(largest, renderer::kInfinity) - largest;
+  if (max_edge >= kLeastEdge * spacing) return;
+  throw renderer::Error(
+      {scene.path, "receivers",
+       fmt::format("edges of {:.3g} m where positions are {:.3g} m apart at least, {:.3g} m from the origin", max_edge,
+                   spacing, largest),
+       "a scene nearer to the origin, or a longer --max-edge"});
+}
+
 void check_count(const renderer::Scene& scene, const std::vector<SurfaceMesh>& meshes, float max_edge) {
   if (count_after_split(meshes, max_edge, kMostReceivers) <= kMostReceivers) return;
   throw renderer::Error({scene.path, "receivers",
@@ -184,6 +198,7 @@ Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& op
     throw renderer::Error({scene.path, "", "the scene has no triangles", "surfaces that light can fall on"});
   }
   const float max_edge = options.max_edge > 0 ? options.max_edge : default_max_edge(meshes);
+  check_spacing(scene, max_edge);
   check_count(scene, meshes, max_edge);
   meshes = split_all(std::move(meshes), max_edge);
   Receivers receivers;

@@ -136,7 +136,11 @@ struct SplitCounter {
 }  // namespace
 
 void split_long_edges(SurfaceMesh& mesh, float max_edge) {
-  for (bool changed = true; changed;) {
+  // More than floats have binary places between the longest edge and the shortest; rounding may keep edges long for
+  // ever.
+  constexpr int kPasses = 64;
+  bool changed = true;
+  for (int pass = 0; changed && pass < kPasses; ++pass) {
     Midpoints midpoints(mesh, max_edge);
     std::vector<Triangle> out;
     out.reserve(mesh.triangles.size());

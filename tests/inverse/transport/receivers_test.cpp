@@ -199,6 +199,16 @@ TEST(Receivers, NoneIsHiddenByTheNextWallHoweverFarFromTheOrigin) {
   }
 }
 
+TEST(Receivers, WhereFloatsAreTooFarApartForThemAreRefused) {
+  Scene scene;
+  renderer::Mesh room = test::room({3, 2, 4}, 4);
+  for (Vec3f& p : room.positions) p = p + Vec3f{1e6F, 0, 0};
+  test::add_mesh(scene, room, test::lambert({1, 1, 1}), "room");
+  EXPECT_THROW(make_receivers(scene, {.max_edge = 0.05F}), renderer::Error);
+  EXPECT_THROW(make_receivers(scene, {}), renderer::Error);
+  EXPECT_GT(make_receivers(scene, {.max_edge = 0.5F}).size(), 50U);
+}
+
 TEST(Receivers, OfAnotherSceneAreToldByTheirPlaces) {
   const Scene scene = test::corner_with_ball(), other = own_scene("cornell.glb");
   const RayTracer tracer(scene), other_tracer(other);
