@@ -39,7 +39,7 @@ TEST(CliJsonOutput, KeysStayInOrder) {
 }
 
 TEST(CliJsonOutput, InvalidUtf8DoesNotThrow) {
-  EXPECT_NO_THROW(static_cast<void>(nlohmann::json::parse(json_text(Json(std::string("a\xff"))))));
+  EXPECT_TRUE(nlohmann::json::parse(json_text(Json(std::string("a\xff")))).is_string());
 }
 
 TEST(CliJsonOutput, SecondsAreTakenOutAtAnyDepth) {
