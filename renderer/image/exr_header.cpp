@@ -11,7 +11,7 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::uint32_t kMagic = 20000630, kMultipart = 1U << 12;
-constexpr std::uint64_t kMostPixelsOfTile = 1U << 24, kMostPixelsOfLine = 1U << 24;  // libraries take memory for one
+constexpr std::uint64_t kMostPixelsOfTile = 1U << 24, kMostPixelsOfLine = 1U << 20;  // libraries take memory for one
 
 // 0 where the stream ends, which it then says.
 std::uint32_t read_number(std::istream& stream) {
