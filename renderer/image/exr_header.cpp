@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,37 @@ std::optional<std::string> read_name(std::istream& stream) {
     if (c == 0) return name;
   }
   return std::nullopt;
+}
+
+// Bytes of values that readers take at their own length, whatever the header says it is.
+std::optional<std::uint32_t> fixed_size(const std::string& type) {
+  constexpr std::pair<std::string_view, std::uint32_t> kSizes[] = {
+      {"int", 4},       {"float", 4},    {"double", 8},         {"v2i", 8},      {"v2f", 8},
+      {"v2d", 16},      {"v3i", 12},     {"v3f", 12},           {"v3d", 24},     {"box2i", 16},
+      {"box2f", 16},    {"m33f", 36},    {"m33d", 72},          {"m44f", 64},    {"m44d", 128},
+      {"rational", 8},  {"timecode", 8}, {"keycode", 28},       {"tiledesc", 9}, {"compression", 1},
+      {"lineOrder", 1}, {"envmap", 1},   {"chromaticities", 32}};
+  for (const auto& [name, size] : kSizes) {
+    if (type == name) return size;
+  }
+  return std::nullopt;
+}
+
+// A list of channels ends with an empty name: whether that is where the header says.
+bool ends_in_time(std::istream& stream, std::uint32_t size) {
+  constexpr std::streamoff kAfterName = 16;
+  const auto begin = stream.tellg(), end = begin + std::streamoff(size);
+  std::optional<std::string> name = read_name(stream);
+  for (; name && !name->empty() && stream.tellg() < end; name = read_name(stream))
+    stream.seekg(kAfterName, std::ios::cur);
+  const bool in_time = name && name->empty() && stream.tellg() == end;
+  stream.clear();
+  stream.seekg(begin);
+  return in_time;
+}
+
+bool has_its_size(std::istream& stream, const std::string& type, std::uint32_t size) {
+  return type == "chlist" ? ends_in_time(stream, size) : fixed_size(type).value_or(size) == size;
 }
 
 struct Header {
@@ -71,7 +104,7 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<s
     const std::uint32_t size = read_number(stream);
     if (!type || !stream) {
       damage = "its header is cut short";
-    } else if (size > file_size - std::uintmax_t(stream.tellg())) {
+    } else if (size > file_size - std::uintmax_t(stream.tellg()) || !has_its_size(stream, *type, size)) {
       damage = fmt::format("its header is corrupt: attribute \"{}\" of {} bytes", name->substr(0, 40), size);
     }
     if (damage) return any;

@@ -78,6 +78,20 @@ TEST(ExrHeader, TilesAndLinesBeyondAllMeasureAreRefused) {
   EXPECT_EQ(damage(window(4095)), "nothing");
 }
 
+// Readers take them at their own length, and would find another header than the one that was looked at.
+TEST(ExrHeader, ValuesOfAnotherSizeThanTheirTypeAreRefused) {
+  const auto damage = [](const std::string& type, const std::string& contents) {
+    return damage_of(
+        header(2, std::string("x") + '\0' + type + '\0' + number(std::uint32_t(contents.size())) + contents + '\0'));
+  };
+  EXPECT_EQ(damage("float", std::string(4, 'f')), std::nullopt);
+  EXPECT_TRUE(damage("float", std::string(5, 'f')).has_value());
+  const std::string channel = std::string("R") + '\0' + std::string(16, '\1');
+  EXPECT_EQ(damage("chlist", channel + channel + '\0'), std::nullopt);
+  EXPECT_TRUE(damage("chlist", channel + '\0' + channel + '\0').has_value());
+  EXPECT_TRUE(damage("chlist", channel).has_value());
+}
+
 TEST(ExrHeader, AHeaderThatEndsEarlyIsCutShort) {
   const std::string whole = header(2, attribute("note", 2, "ab")) + '\0';
   for (std::size_t length = 8; length < whole.size(); ++length) {
