@@ -15,6 +15,7 @@
 
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_lock.h"
 
 namespace chiaro::cli {
 namespace {
@@ -37,10 +38,9 @@ void try_to_make_file(const std::filesystem::path& folder, const std::filesystem
 
 // Of the shell: `> LIGHTS.json` beside `-o LIGHTS.glb` would lose one of the two.
 bool is_standard_output(const std::filesystem::path& path) {
-  struct stat output {
-  }, file{};
-  if (fstat(STDOUT_FILENO, &output) != 0 || !S_ISREG(output.st_mode) || stat(path.c_str(), &file) != 0) return false;
-  return output.st_dev == file.st_dev && output.st_ino == file.st_ino;
+  struct stat output {};
+  return fstat(STDOUT_FILENO, &output) == 0 && S_ISREG(output.st_mode) &&
+         renderer::names_open_file(path, STDOUT_FILENO);
 }
 
 // Links in the place of the file itself are not followed: an output takes the link's place, not that of what it leads

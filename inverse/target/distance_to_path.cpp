@@ -196,9 +196,7 @@ struct LocalSurface {
 
 // Metres: the radius, but no more than the surface is large. Tolerances are parts of it.
 double scale_of(const ReceiverSurface& surface, double radius) {
-  renderer::Box3f box;
-  for (const renderer::Vec3f& p : surface.receivers.positions) box.extend(p);
-  return std::min(radius, double(box.diagonal()));
+  return surface.tree.nodes.empty() ? 0 : std::min(radius, double(surface.tree.nodes.front().box.diagonal()));
 }
 
 LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePath& path, double radius, double scale) {

@@ -92,10 +92,12 @@ float default_max_edge(const std::vector<SurfaceMesh>& meshes) {
 }
 
 // Between neighbours among floats no edge can be split.
-void check_spacing(const renderer::Scene& scene, float max_edge) {
+void check_spacing(const renderer::Scene& scene, const std::vector<SurfaceMesh>& meshes, float max_edge) {
   constexpr float kLeastEdge = 4;
-  const Box3f box = renderer::bounds(scene);
-  const float largest = max_component(max(abs(box.min), abs(box.max)));
+  float largest = 0;
+  for (const SurfaceMesh& mesh : meshes) {
+    for (const Vec3f& p : mesh.positions) largest = std::max(largest, max_component(abs(p)));
+  }
   const float spacing = std::nextafter(largest, renderer::kInfinity) - largest;
   if (max_edge >= kLeastEdge * spacing) return;
   throw renderer::Error(
@@ -198,7 +200,7 @@ Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& op
     throw renderer::Error({scene.path, "", "the scene has no triangles", "surfaces that light can fall on"});
   }
   const float max_edge = options.max_edge > 0 ? options.max_edge : default_max_edge(meshes);
-  check_spacing(scene, max_edge);
+  check_spacing(scene, meshes, max_edge);
   check_count(scene, meshes, max_edge);
   meshes = split_all(std::move(meshes), max_edge);
   Receivers receivers;

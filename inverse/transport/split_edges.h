@@ -12,8 +12,9 @@ struct SurfaceMesh {
   std::vector<renderer::Triangle> triangles;
 };
 
-// Splits edges longer than max_edge (metres) at their middle until none is left. An edge shared by two triangles is
-// split for both, so that the mesh stays whole. Old vertices keep their numbers; new normals are interpolated.
+// Splits edges longer than max_edge (metres) at their middle until none is left that floats have a middle of. An edge
+// shared by two triangles is split for both, so that the mesh stays whole. Old vertices keep their numbers; new normals
+// are interpolated.
 void split_long_edges(SurfaceMesh& mesh, float max_edge);
 
 // How many vertices split_long_edges would leave, up to float rounding, without making them. Counting ends soon after

@@ -14,22 +14,19 @@
 #include "renderer/core/error.h"
 
 namespace chiaro::renderer {
-namespace {
 
-// It may have been renamed between being opened and being locked.
-bool is_still(int file, const std::filesystem::path& path) {
-  struct stat held {
+bool names_open_file(const std::filesystem::path& path, int descriptor) {
+  struct stat opened {
   }, named{};
-  return fstat(file, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
-         held.st_ino == named.st_ino;
+  return fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
 }
-
-}  // namespace
 
 FileLock::FileLock(const std::filesystem::path& path)
     : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   if (file_ < 0) throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
-  if (::flock(file_, LOCK_EX | LOCK_NB) == 0 && is_still(file_, path)) return;
+  // It may have been renamed between being opened and being locked.
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0 && names_open_file(path, file_)) return;
   ::close(file_);
   throw Error({path.string(), "", "another process is writing it", "its end, or another output"});
 }

@@ -5,6 +5,9 @@
 
 namespace chiaro::renderer {
 
+// Whether `path` names the file that is open as `descriptor`.
+bool names_open_file(const std::filesystem::path& path, int descriptor);
+
 // Holds `path`, which is made where it is missing, until it goes; under whatever name the file is by then. Error where
 // another process holds it.
 class FileLock {

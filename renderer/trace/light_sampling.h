@@ -17,8 +17,9 @@ struct PunctualSample {
   Vec3f irradiance;    // lux / cd·m⁻² per channel on a plane across to_light: intensity / distance²
 };
 
+inline constexpr float kNarrowestFall = 1e-7F;  // of cosines, from a spot's inner cone to its outer
+
 // A spot's light by the cosine of the angle from its axis: KHR_lights_punctual's recommended falloff.
-inline constexpr float kNarrowestFall = 1e-7F;  // of cosines, from the inner cone to the outer
 struct SpotCone {
   Vec3f axis;  // unit, from the light outwards
   float cos_inner, cos_outer;
