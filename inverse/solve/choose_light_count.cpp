@@ -62,23 +62,48 @@ class Search {
     return out_of_time_;
   }
 
-  // Refines them and keeps the best, if none of its size was better, without the lights that went out.
-  void consider(const std::vector<LightEstimates>& starts, const JointRefinementOptions& how = kSearching) {
+  std::vector<JointRefinement> refine_all(const std::vector<LightEstimates>& starts,
+                                          const JointRefinementOptions& how) {
     std::vector<JointRefinement> refined(starts.size());
     renderer::parallel_for(starts.size(),
                            [&](std::size_t k) { refined[k] = refine_joint(response_, observations_, starts[k], how); });
     refinements_ += int(starts.size());
-    const auto best = std::min_element(refined.begin(), refined.end(),
-                                       [](const auto& a, const auto& b) { return a.error < b.error; });
-    if (best == refined.end()) return;
-    if (options_.exact != nullptr && best->error < kClose) refine_exactly(*best, how);
-    keep(std::move(*best));
+    return refined;
   }
 
-  // Between the lights of a grid indirect light is known less well than targets are.
-  void refine_exactly(JointRefinement& refined, const JointRefinementOptions& how) {
-    options_.exact->correct(response_, refined.lights, kStill * double(response_.grid().region.diagonal()));
-    refined = refine_joint(response_, observations_, refined.lights, how);
+  // Refines them and keeps the best, if none of its size was better, without the lights that went out.
+  void consider(const std::vector<LightEstimates>& starts, const JointRefinementOptions& how = kSearching) {
+    std::vector<JointRefinement> refined = refine_all(starts, how);
+    const auto best = std::min_element(refined.begin(), refined.end(),
+                                       [](const auto& a, const auto& b) { return a.error < b.error; });
+    if (best != refined.end()) keep_exactly({*best}, how);
+  }
+
+  // Between the lights of a grid indirect light is known less well than targets are: sets that are close to the target
+  // are refined again without interpolation.
+  void keep_exactly(std::vector<JointRefinement> refined, const JointRefinementOptions& how) {
+    std::vector<LightEstimates> close;
+    for (JointRefinement& set : refined) {
+      if (options_.exact != nullptr && set.error < kClose) {
+        close.push_back(std::move(set.lights));
+      } else {
+        keep(std::move(set));
+      }
+    }
+    if (close.empty()) return;
+    correct_all(close);
+    for (JointRefinement& set : refine_all(close, how)) keep(std::move(set));
+  }
+
+  // All at once, which takes little more than one.
+  void correct_all(std::vector<LightEstimates>& sets) const {
+    LightEstimates all;
+    for (const LightEstimates& set : sets) all.insert(all.end(), set.begin(), set.end());
+    options_.exact->correct(response_, all, kStill * double(response_.grid().region.diagonal()));
+    auto corrected = all.begin();
+    for (LightEstimates& set : sets) {
+      for (LightEstimate& light : set) light = std::move(*corrected++);
+    }
   }
 
   void keep(JointRefinement refined) {
@@ -91,9 +116,11 @@ class Search {
 
   void refine_cuts() {
     const int sizes = std::min({tree_.tree.leaf_count, most_lights(), kMostCuts});
+    std::vector<LightEstimates> cuts;
     for (int size = 1; size <= sizes && !out_of_time(); ++size) {
-      consider({cut_light_tree(tree_, observations_, {0, size, size}).lights});
+      cuts.push_back(cut_light_tree(tree_, observations_, {0, size, size}).lights);
     }
+    keep_exactly(refine_all(cuts, kSearching), kSearching);
   }
 
   double least_error() const {

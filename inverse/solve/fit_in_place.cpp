@@ -43,7 +43,8 @@ std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::L
   const int paths = std::max(kLeastSamples, verification_samples(options, at.size()));
   const renderer::TraceOptions trace{paths, problem.bake.bounces, fresh_seed(options.seed, 6), true};
   std::vector<Column> columns;
-  for (const auto& traced : trace_illumination_per_light(problem.tracer, at, unity, trace, control)) {
+  const auto by_light = trace_illumination_by_light(problem.tracer, at, unity, trace, control);
+  for (const auto& traced : by_light.of_light) {
     columns.push_back(column_of(traced));
   }
   return columns;
@@ -88,6 +89,12 @@ std::vector<FoundLight> lit(const renderer::Lights& lights, const Observations& 
   }
   for (FoundLight& light : found) light.contribution /= std::max(total, 1e-300);
   return found;
+}
+
+renderer::Lights found_lights(const SolveResult& result) {
+  renderer::Lights lights;
+  for (const FoundLight& found : result.lights) lights.push_back(found.light);
+  return lights;
 }
 
 struct ManyObservations {
@@ -143,7 +150,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.target_noise = target_noise(problem.target);
   result.important_vertices = int(observations.wanted.rows());
   result.termination = "all lights stay where they are";
-  verify(problem, options, control, result);
+  judge(problem, options, trace_afresh(problem, found_lights(result), options, control), result);
   clock.finish("verification",
                {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
   result.stages = clock.stages();

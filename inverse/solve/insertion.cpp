@@ -4,12 +4,14 @@
 #include <optional>
 
 #include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr std::size_t kMostInsertions = 3;
 constexpr std::size_t kDarkest = 16;  // receivers in front of which a light is tried …
+constexpr std::size_t kTraced = 24;   // … of each distance, those that explain most if nothing is in the way, …
 constexpr float kFarthest = 0.05F;    // … from this part of the region's diagonal …
 constexpr float kNearest = 0.0005F;   // … down to this one …
 constexpr float kStep = 1.5F;         // … in these steps
@@ -32,8 +34,10 @@ class BestInsertion {
     const double gain = fit_intensity(residual_, column, place);
     if (gain > (best_ ? best_->gain : 0)) best_ = {gain, std::move(place)};
   }
-  void append_to(std::vector<Insertion>& insertions) const {
+  // True: there is one.
+  bool append_to(std::vector<Insertion>& insertions) const {
     if (best_) insertions.push_back(*best_);
+    return best_.has_value();
   }
 
  private:
@@ -55,14 +59,25 @@ std::vector<std::size_t> darkest_receivers(const Observations& residual) {
 }
 
 // By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
-LightEstimates direct_lights(const LightResponse& response, const std::vector<Eigen::Vector3d>& positions) {
-  LightEstimates lights;
-  for (const Eigen::Vector3d& p : positions) {
-    LightEstimate light{p, Eigen::Array3d::Ones()};
-    light.correction = -response.interpolated_indirect(p);
-    lights.push_back(std::move(light));
-  }
-  return lights;
+std::vector<Column> direct_columns(const LightResponse& response, const std::vector<Eigen::Vector3d>& places) {
+  std::vector<Column> columns(places.size());
+  renderer::parallel_for(places.size(), [&](std::size_t j) { columns[j] = response.direct(places[j]); });
+  return columns;
+}
+
+// Those from which most is explained if nothing is in the way.
+std::vector<Eigen::Vector3d> most_promising(const LightResponse& response, const Observations& residual,
+                                            const std::vector<Eigen::Vector3d>& places) {
+  std::vector<std::pair<double, std::size_t>> gain(places.size());
+  renderer::parallel_for(places.size(), [&](std::size_t j) {
+    LightEstimate light{places[j], Eigen::Array3d::Ones()};
+    gain[j] = {-fit_intensity(residual, response.unoccluded(places[j]), light), j};
+  });
+  const std::size_t count = std::min(kTraced, places.size());
+  std::partial_sort(gain.begin(), gain.begin() + std::ptrdiff_t(count), gain.end());
+  std::vector<Eigen::Vector3d> promising;
+  for (std::size_t k = 0; k < count; ++k) promising.push_back(places[gain[k].second]);
+  return promising;
 }
 
 }  // namespace
@@ -96,17 +111,26 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
   std::vector<Insertion> insertions;
   for (float t = kFarthest; t > kNearest; t /= kStep) {
-    const LightEstimates places =
-        direct_lights(response, places_in_front(response, darkest, t * response.grid().region.diagonal()));
-    const std::vector<Column> columns = evaluate_columns(response, places, Evaluation::kTracedVisibility);
+    const std::vector<Eigen::Vector3d> places =
+        most_promising(response, residual, places_in_front(response, darkest, t * response.grid().region.diagonal()));
+    const std::vector<Column> columns = direct_columns(response, places);
     BestInsertion in_front(residual);
-    for (std::size_t j = 0; j < places.size(); ++j) in_front.consider(places[j], columns[j]);
-    in_front.append_to(insertions);
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      in_front.consider({places[j], Eigen::Array3d::Ones()}, columns[j]);
+    }
+    if (in_front.append_to(insertions)) {
+      LightEstimate& light = insertions.back().light;
+      light.correction = -response.interpolated_indirect(light.position);
+    }
   }
   BestInsertion on_grid(residual);
   const std::vector<Vec3f>& grid = response.grid().positions;
-  for (const std::size_t j : response.grid_lights_near_places()) {
-    on_grid.consider({to_eigen(grid[j]), Eigen::Array3d::Ones()}, response.grid_column(j));
+  const std::vector<std::size_t>& lights_of_grid = response.grid_lights_near_places();
+  std::vector<Column> grid_columns(lights_of_grid.size());
+  renderer::parallel_for(lights_of_grid.size(),
+                         [&](std::size_t k) { grid_columns[k] = response.grid_column(lights_of_grid[k]); });
+  for (std::size_t k = 0; k < lights_of_grid.size(); ++k) {
+    on_grid.consider({to_eigen(grid[lights_of_grid[k]]), Eigen::Array3d::Ones()}, grid_columns[k]);
   }
   on_grid.append_to(insertions);
   std::stable_sort(insertions.begin(), insertions.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });

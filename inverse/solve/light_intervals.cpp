@@ -29,41 +29,55 @@ Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const L
   return j;
 }
 
-// The pseudoinverse of a normal matrix.
-struct NormalInverse {
-  Eigen::MatrixXd matrix;
-  std::vector<bool> known;  // the normal matrix tells of this parameter
+// Instruments × derivatives, weighted; for least squares, the normal matrix.
+Eigen::MatrixXd product_of(const Derivatives& instruments, const Derivatives& derivatives,
+                           const Eigen::VectorXd& weight) {
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(instruments[0].cols(), derivatives[0].cols());
+  for (std::size_t c = 0; c < 3; ++c) product += instruments[c].transpose() * weight.asDiagonal() * derivatives[c];
+  return product;
+}
+
+struct Inverse {
+  Eigen::MatrixXd matrix;   // pseudoinverse of instruments × derivatives
+  std::vector<bool> known;  // the instruments tell of this parameter
 };
 
-NormalInverse invert(const Eigen::MatrixXd& normal) {
+Inverse invert(const FitAtRest& fit) {
+  const Eigen::MatrixXd normal = product_of(fit.instruments, fit.instruments, fit.weight);
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * normal * scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double e) { return e > kUnknown ? 1 / e : 0; });
-  const Eigen::MatrixXd vectors = scale.asDiagonal() * eigen.eigenvectors();
-  NormalInverse result{vectors * inverse.asDiagonal() * vectors.transpose(), {}};
+  Inverse result;
+  std::vector<Eigen::Index> seen;  // directions in which the instruments tell something
+  for (Eigen::Index e = 0; e < scale.size(); ++e) {
+    if (eigen.eigenvalues()[e] > kUnknown) seen.push_back(e);
+  }
+  const Eigen::MatrixXd basis = scale.asDiagonal() * eigen.eigenvectors()(Eigen::all, seen);
+  result.matrix = Eigen::MatrixXd::Zero(scale.size(), scale.size());
+  if (!seen.empty()) {
+    const Eigen::MatrixXd product = product_of(fit.instruments, fit.derivatives, fit.weight);
+    result.matrix = basis * (basis.transpose() * product * basis).inverse() * basis.transpose();
+  }
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    double known = scale[k] > 0 ? 1 : 0;
-    for (Eigen::Index e = 0; e < inverse.size(); ++e) {
-      if (inverse[e] <= 0) known -= eigen.eigenvectors()(k, e) * eigen.eigenvectors()(k, e);
-    }
-    result.known.push_back(known >= 0.5);
+    result.known.push_back(scale[k] > 0 && eigen.eigenvectors()(k, seen).squaredNorm() >= 0.5);
   }
   return result;
 }
 
 // Receivers × parameters: how far each pulls, with what it would leave if it were left out of the fit.
-Eigen::MatrixXd pulls_of(const std::array<Eigen::MatrixXd, 3>& jacobians, const Eigen::MatrixXd& residual,
-                         const Eigen::VectorXd& weight, const Eigen::MatrixXd& inverse_normal) {
-  Eigen::MatrixXd pull(weight.size(), inverse_normal.cols());
-  Eigen::Matrix<double, 3, Eigen::Dynamic> j(3, inverse_normal.cols());
-  for (Eigen::Index i = 0; i < weight.size(); ++i) {
-    for (int c = 0; c < 3; ++c) j.row(c) = jacobians[std::size_t(c)].row(i);
-    const Eigen::Matrix3d leverage = weight[i] * j * inverse_normal * j.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(leverage);
+Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
+  Eigen::MatrixXd pull(fit.weight.size(), inverse.cols());
+  Eigen::Matrix<double, 3, Eigen::Dynamic> derivative(3, inverse.cols()), instrument(3, inverse.cols());
+  for (Eigen::Index i = 0; i < fit.weight.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      derivative.row(c) = fit.derivatives[std::size_t(c)].row(i);
+      instrument.row(c) = fit.instruments[std::size_t(c)].row(i);
+    }
+    const Eigen::Matrix3d leverage = fit.weight[i] * derivative * inverse * instrument.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen((leverage + leverage.transpose()) / 2);
     const Eigen::Vector3d outside = (1 - eigen.eigenvalues().array()).max(kLeastOutside).inverse();
-    const Eigen::Vector3d left_out =
-        eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose() * residual.row(i).transpose();
-    pull.row(i) = weight[i] * left_out.transpose() * j;
+    const Eigen::Vector3d left_out = eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose() *
+                                     fit.residual.row(i).transpose();
+    pull.row(i) = fit.weight[i] * left_out.transpose() * instrument;
   }
   return pull;
 }
@@ -84,23 +98,15 @@ bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimat
 
 }  // namespace
 
-LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
-                               const LightEstimates& lights) {
-  if (lights.empty()) return {};
-  const std::vector<ColumnWithGradient> columns = evaluate_columns_with_gradient(response, lights);
-  const auto parameters = Eigen::Index(kParameters * lights.size());
-  const Eigen::VectorXd weight = observations.sqrt_weight.cwiseAbs2();
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(parameters, parameters), residual = -observations.wanted;
-  std::array<Eigen::MatrixXd, 3> jacobians;
-  for (int c = 0; c < 3; ++c) {
-    jacobians[std::size_t(c)] = jacobian(columns, lights, c);
-    for (std::size_t l = 0; l < lights.size(); ++l) residual.col(c) += lights[l].intensity[c] * columns[l].value.col(c);
-    normal += jacobians[std::size_t(c)].transpose() * weight.asDiagonal() * jacobians[std::size_t(c)];
-  }
-  const NormalInverse inverse = invert(normal);
-  const Eigen::MatrixXd pull = pulls_of(jacobians, residual, weight, inverse.matrix);
-  Eigen::MatrixXd covariance = inverse.matrix * (pull.transpose() * pull) * inverse.matrix;
-  for (Eigen::Index k = 0; k < parameters; ++k) {
+Derivatives derivatives_of(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights) {
+  return {jacobian(columns, lights, 0), jacobian(columns, lights, 1), jacobian(columns, lights, 2)};
+}
+
+LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& lights) {
+  const Inverse inverse = invert(fit);
+  const Eigen::MatrixXd pull = pulls_of(fit, inverse.matrix);
+  Eigen::MatrixXd covariance = inverse.matrix * (pull.transpose() * pull) * inverse.matrix.transpose();
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
     if (!inverse.known[std::size_t(k)]) covariance(k, k) = std::numeric_limits<double>::infinity();
   }
   LightIntervals intervals;
@@ -115,6 +121,18 @@ LightIntervals light_intervals(const LightResponse& response, const Observations
     }
   }
   return intervals;
+}
+
+LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
+                               const LightEstimates& lights) {
+  if (lights.empty()) return {};
+  const std::vector<ColumnWithGradient> columns = evaluate_columns_with_gradient(response, lights);
+  const Derivatives derivatives = derivatives_of(columns, lights);
+  Column residual = -observations.wanted;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    residual += columns[l].value * lights[l].intensity.matrix().asDiagonal();
+  }
+  return light_intervals({derivatives, derivatives, residual, observations.sqrt_weight.cwiseAbs2()}, lights);
 }
 
 }  // namespace chiaro::inverse

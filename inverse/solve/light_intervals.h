@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -24,5 +26,21 @@ struct LightIntervals {
 // errors for linear regression with multi-stage samples, 2002.
 LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
                                const LightEstimates& lights);
+
+// Of each channel: receivers × parameters. A light's parameters are x, y, z, red, green and blue.
+using Derivatives = std::array<Eigen::MatrixXd, 3>;
+
+// By intensities and by positions, as one channel shows them; columns[j] belongs to lights[j].
+Derivatives derivatives_of(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights);
+
+// A fit where it has come to rest: Σ weight · instrument · residual = 0 for each parameter.
+struct FitAtRest {
+  const Derivatives& derivatives;  // of the residual
+  const Derivatives& instruments;  // the same for least squares
+  const Column& residual;
+  Eigen::VectorXd weight;
+};
+// The same of any such fit. Source: White, Instrumental Variables Regression with Independent Observations, 1982.
+LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& lights);
 
 }  // namespace chiaro::inverse

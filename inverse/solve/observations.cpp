@@ -38,6 +38,12 @@ renderer::PointLight point_light(const LightEstimate& estimate) {
   return light;
 }
 
+renderer::Lights point_lights(const LightEstimates& estimates) {
+  renderer::Lights lights;
+  for (const LightEstimate& estimate : estimates) lights.emplace_back(point_light(estimate));
+  return lights;
+}
+
 std::vector<Vec3f> light_positions(const LightEstimates& lights) {
   std::vector<Vec3f> positions;
   for (const LightEstimate& light : lights) positions.push_back(to_vec3f(light.position));

@@ -53,6 +53,7 @@ struct LightEstimate {
 using LightEstimates = std::vector<LightEstimate>;
 
 renderer::PointLight point_light(const LightEstimate& estimate);
+renderer::Lights point_lights(const LightEstimates& estimates);
 std::vector<Vec3f> light_positions(const LightEstimates& lights);
 
 // ‖ weighted column times intensity ‖: the light's contribution (3.5).

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
@@ -17,7 +18,6 @@ namespace {
 
 constexpr int kFixedSamplesOfMany = 32;  // per receiver of the last refinement …
 constexpr std::size_t kMany = 50000;     // … of so many at most
-constexpr double kExplained = 1.5;       // times the noise of the target, or less: more receivers hardly tell more
 constexpr double kFarFromTarget = 0.1;   // error of lights that do not stand where the target's stood
 constexpr double kWorthALight = 1.05;    // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;     // contribution to the target's norm
@@ -42,18 +42,25 @@ std::vector<LightSet> error_curve_of(const LightResponse& response, const Observ
 }
 
 // Without the lights that the last descent left with less than what anybody sees of them, and those that make good
-// what is wrong with one receiver, and stand no one can tell where; one always stays.
+// what is wrong with one receiver, and stand no one can tell where; one always stays. The first `beside_surfaces` are
+// those.
 LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
-                                  const LightEstimates& lights) {
+                                  const LightEstimates& lights, std::size_t& beside_surfaces) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   const std::vector<LightInterval> intervals = light_intervals(response, judged, lights).lights;
   LightEstimates kept;
+  std::size_t kept_beside = 0;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
     const bool nowhere = !intervals[j].position.array().isFinite().any();
-    if (norm > (nowhere ? kHardlySeen : kNegligible) * judged.target_norm) kept.push_back(lights[j]);
+    if (norm > (nowhere ? kHardlySeen : kNegligible) * judged.target_norm) {
+      kept.push_back(lights[j]);
+      kept_beside += j < beside_surfaces ? 1 : 0;
+    }
   }
-  return kept.empty() ? lights : kept;
+  if (kept.empty()) return lights;
+  beside_surfaces = kept_beside;
+  return kept;
 }
 
 // The lights refined over many receivers. Those beside surfaces, whose neighbours may not be among the many, stay.
@@ -62,25 +69,18 @@ LightEstimates refined_over_many(const JointSearch& search, const LightEstimates
   const SolveProblem& problem = search.problem;
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
   const auto samples = samples_at(problem.target, draw.chosen);
-  const TransportCache direct = direct_transport(search.response.grid(), samples.size());
-  const LightResponse response(problem.tracer, samples, direct, search.response.places());
+  const DirectlyLit many(problem.tracer, search.response, samples);
   Observations observations = observe_target(
       problem.target, draw, fixed_illumination(problem, samples, kFixedSamplesOfMany, search.options, search.control));
   if (!beside_surfaces.empty()) observations = with_capped_weights(observations);
   BakeSettings settings = search.exact.settings();
   settings.seed = fresh_seed(search.options.seed, 4);
-  PolishedLights refined =
-      refine_over_many({problem.tracer, response, observations, settings, search.control}, lights, beside_surfaces);
+  PolishedLights refined = refine_over_many({problem.tracer, many.response(), observations, settings, search.control},
+                                            lights, beside_surfaces);
   search.exact.correct(search.response, refined.lights);
   clock.finish("refinement_over_many",
                {{"receivers", double(samples.size())}, {"rounds", refined.rounds}, {"relative_l2", refined.error}});
   return joined(beside_surfaces, refined.lights);
-}
-
-renderer::Lights point_lights(const LightEstimates& lights) {
-  renderer::Lights placed;
-  for (const LightEstimate& light : lights) placed.emplace_back(point_light(light));
-  return placed;
 }
 
 // Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
@@ -183,9 +183,9 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
   const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
+  const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
   const auto at_last = [&] {
     if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
-    const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
     if (far) return best_over_many(search, polished.lights, count.sets, clock);
     if (ties_lights_together(search.problem)) {
       return best_over_many(search, joined(beside_surfaces, polished.lights), {}, clock);
@@ -195,11 +195,17 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   const LightEstimates all = at_last();
   const bool may_share_places = !(search.problem.places.light_distance > 0);
   const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
-  return {options.exact_lights > 0 ? exactly : without_negligible(response, search.judged, all), start,
+  std::size_t held = beside_surfaces.size();
+  LightEstimates lights = options.exact_lights > 0 ? exactly : without_negligible(response, search.judged, all, held);
+  return {std::move(lights),
+          start,
           count.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more",
-          cut.nodes, error_curve};
+          cut.nodes,
+          error_curve,
+          !far && !count.out_of_time && !ties_lights_together(search.problem),
+          held};
 }
 
 }  // namespace chiaro::inverse

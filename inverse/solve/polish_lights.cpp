@@ -33,6 +33,8 @@ PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& re
     polished.lights = std::move(refined.lights);
     ++polished.rounds;
   }
+  polished.error = relative_error(observations, illumination_of(response, polished.lights));
+  if (polished.error <= kExplained * observations.noise) return polished;
   SettledLights settled = settle_positions(response, observations, polished.lights, kSettle * diagonal);
   polished.lights = std::move(settled.lights);
   polished.error = settled.error;

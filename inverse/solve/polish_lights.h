@@ -5,6 +5,8 @@
 
 namespace chiaro::inverse {
 
+inline constexpr double kExplained = 1.5;  // times the noise of the target, or less: more receivers hardly tell more
+
 struct PolishedLights {
   LightEstimates lights;
   double error = 0;  // (3.6), no interpolation
@@ -16,7 +18,7 @@ double largest_move(const LightEstimates& a, const LightEstimates& b);
 
 // The last descent over the important vertices, without interpolation: indirect light is gathered at the lights' very
 // positions, and its difference from the interpolated one is carried along as a constant while the lights are refined;
-// again until they rest. Then they settle across shadow edges.
+// again until they rest. Where noise does not explain what is left they settle across shadow edges.
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start);
 

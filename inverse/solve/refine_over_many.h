@@ -4,13 +4,9 @@
 
 namespace chiaro::inverse {
 
-// A transport in which light arrives directly only, for any number of receivers; lights may stand where `grid` has
-// them.
-TransportCache direct_transport(const LightGrid& grid, std::size_t receivers);
-
 struct ManyReceivers {
   const renderer::RayTracer& tracer;
-  const LightResponse& response;  // direct_transport's
+  const LightResponse& response;  // of direct light alone
   const Observations& observations;
   BakeSettings settings;
   const renderer::Control& control;
@@ -18,7 +14,7 @@ struct ManyReceivers {
 
 // Refines lights that the important vertices have found over many receivers: these see where shadows end as the few
 // cannot, and together they are less noisy. The indirect light of all lights is path traced, a little at each receiver,
-// and again where the lights have come to. `others` stay as they are.
+// and again where the lights have come to, until they hardly move. `others` stay as they are.
 PolishedLights refine_over_many(const ManyReceivers& many, const LightEstimates& start, const LightEstimates& others);
 
 }  // namespace chiaro::inverse

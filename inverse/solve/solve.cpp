@@ -16,6 +16,7 @@
 #include "inverse/solve/optimize_simplex.h"
 #include "inverse/solve/prepare_transport.h"
 #include "inverse/solve/report.h"
+#include "inverse/solve/settle_by_trace.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/solve/traced_light.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -56,8 +57,11 @@ std::unique_ptr<HeldOut> hold_out(const SolveProblem& problem, BakeSettings sett
 }
 
 // Brightest contribution first.
-void report_lights(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
+void report_lights(const LightResponse& response, const Observations& observations, const LightsByTrace& by_trace,
                    SolveResult& result) {
+  const LightEstimates& lights = by_trace.lights;
+  const LightIntervals intervals =
+      by_trace.intervals ? *by_trace.intervals : light_intervals(response, observations, lights);
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   std::vector<double> norm;
   for (std::size_t j = 0; j < lights.size(); ++j) {
@@ -66,7 +70,6 @@ void report_lights(const LightResponse& response, const Observations& observatio
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
   std::vector<std::size_t> order = all_indices(lights.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
-  const LightIntervals intervals = light_intervals(response, observations, lights);
   std::vector<int> number(lights.size());
   for (const std::size_t j : order) {
     renderer::PointLight light = point_light(lights[j]);
@@ -226,19 +229,20 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   optimum.lights =
       filled_up(response, judged, std::move(optimum.lights), std::size_t(std::max(1, options.exact_lights)));
   require_all_lights(problem, options, optimum.lights);
-  report_lights(response, reported, optimum.lights, result);
+  LightsByTrace by_trace = optimum.settles ? settle_by_trace(problem, options, control, response, optimum, clock)
+                                           : trace_lights(problem, options, control, optimum.lights, clock);
+  result.optimal_seconds += by_trace.settling_seconds;
+  report_lights(response, reported, by_trace, result);
   result.initial_relative_l2 = relative_error(reported, illumination_of(response, optimum.start));
-  result.relative_l2_cached = relative_error(reported, illumination_of(response, optimum.lights));
+  result.relative_l2_cached = relative_error(reported, illumination_of(response, by_trace.lights));
   result.termination = optimum.termination;
   result.error_curve = optimum.error_curve;
   result.target_noise = target_noise(problem.target);
-  verify(problem, options, control, result);
-  clock.finish("verification",
-               {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
+  judge(problem, options, std::move(by_trace.traced), result);
   result.stages = clock.stages();
   if (!options.report_folder.empty()) {
     write_report({problem.tracer.scene(), problem.target, importance, transport.cache.grid, distribution, clusters,
-                  tree, optimum.cut, optimum.lights, result},
+                  tree, optimum.cut, by_trace.lights, result},
                  options.report_folder);
     clock.finish("report", {});
     result.stages = clock.stages();

@@ -34,19 +34,25 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
   return std::clamp(int(kVerificationPaths / double(receivers)), kLeastVerificationSamples, kMostVerificationSamples);
 }
 
-void verify(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-            SolveResult& result) {
-  renderer::Lights lights = problem.kept_lights;
-  for (const FoundLight& found : result.lights) lights.emplace_back(found.light);
-  const Target& target = problem.target;
-  const renderer::TraceOptions trace{verification_samples(options, target.receivers.size()), problem.bake.bounces,
+FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                        const renderer::Control& control) {
+  renderer::Lights all = lights;
+  all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
+  const Receivers& receivers = problem.target.receivers;
+  const renderer::TraceOptions trace{verification_samples(options, receivers.size()), problem.bake.bounces,
                                      fresh_seed(options.seed, 2), true};
-  const auto traced = trace_illumination(problem.tracer, target.receivers.samples, lights, trace, control);
-  result.illumination = traced.value;
-  result.verification_noise = relative_standard_error(traced);
-  result.relative_l2 = relative_l2(traced.value, target.illumination, target.weight);
+  auto traced = trace_illumination_by_light(problem.tracer, receivers.samples, all, trace, control);
+  traced.of_light.resize(lights.size());
+  return {std::move(traced.total), std::move(traced.of_light)};
+}
+
+void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {
+  const Target& target = problem.target;
+  result.verification_noise = relative_standard_error(traced.all);
+  result.illumination = std::move(traced.all.value);
+  result.relative_l2 = relative_l2(result.illumination, target.illumination, target.weight);
   const double noise = std::hypot(result.verification_noise, result.target_noise);
-  result.not_reached = places_not_reached(target, traced.value, noise);
+  result.not_reached = places_not_reached(target, result.illumination, noise);
   result.advice = advice_for(problem, options, result);
 }
 

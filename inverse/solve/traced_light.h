@@ -17,8 +17,15 @@ std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::ve
 // Paths per receiver of a final evaluation, as asked for or by the number of receivers.
 int verification_samples(const SolveOptions& options, std::size_t receivers);
 
-// Traces the lights of the result afresh over all receivers, and fills in how far they are from the target.
-void verify(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-            SolveResult& result);
+// All receivers' illumination, path traced afresh.
+struct FreshTrace {
+  renderer::Illumination all;                // cd/m²; with what shines anyway
+  std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
+};
+FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                        const renderer::Control& control);
+
+// Fills in how far the lights of the result are from the target.
+void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result);
 
 }  // namespace chiaro::inverse

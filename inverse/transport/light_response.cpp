@@ -154,6 +154,12 @@ Column LightResponse::direct(const Vector3d& position) const {
   return column;
 }
 
+Column LightResponse::unoccluded(const Vector3d& position) const {
+  Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
+  add_direct(position, std::vector<double>(receivers_.size(), 1), column);
+  return column;
+}
+
 Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) const {
   if (evaluation == Evaluation::kExact) return evaluate_with_gradient(light, evaluation).value;
   check_kind(light, evaluation, gather_);

@@ -50,9 +50,13 @@ void add_batch(const Sampling& sampling, const SurfaceSample& at, int batch, std
   }
 }
 
-Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream) {
+// per_light: also what each source brings, all samples together; it has their number, or none.
+Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream,
+                  std::vector<Vec3f>& per_light) {
   PathLight exact;
+  exact.per_light.assign(per_light.size(), {});
   add_exact(sampling, at, stream, exact);
+  per_light = exact.per_light;
   if (!sampling.noisy) return {exact.direct, {}};
 
   const int batches = sampling.batches;
@@ -60,9 +64,13 @@ Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32
   Vec3f mean;
   for (int b = 0; b < batches; ++b) {
     PathLight light;
+    light.per_light.assign(per_light.size(), {});
     add_batch(sampling, at, b, stream, light);
     means[b] = (light.direct + light.indirect) / float(sampling.samples_of(b));
     mean += means[b] / float(batches);
+    for (std::size_t l = 0; l < per_light.size(); ++l) {
+      per_light[l] += light.per_light[l] / float(batches * sampling.samples_of(b));
+    }
   }
   Vec3f error;
   for (int c = 0; c < 3; ++c) {
@@ -73,22 +81,11 @@ Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32
   return {exact.direct + mean, error};
 }
 
-std::vector<Vec3f> estimate_per_light(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream) {
-  const std::size_t sources = sampling.paths.emission_source() + 1;
-  PathLight exact, mean;
-  exact.per_light.resize(sources);
-  mean.per_light.resize(sources);
-  add_exact(sampling, at, stream, exact);
-  for (int b = 0; sampling.noisy && b < sampling.batches; ++b) {
-    PathLight light;
-    light.per_light.resize(sources);
-    add_batch(sampling, at, b, stream, light);
-    for (std::size_t l = 0; l < sources; ++l) {
-      mean.per_light[l] += light.per_light[l] / float(sampling.batches * sampling.samples_of(b));
-    }
-  }
-  for (std::size_t l = 0; l < sources; ++l) exact.per_light[l] += mean.per_light[l];
-  return exact.per_light;
+Illumination sized(std::size_t points) { return {std::vector<Vec3f>(points), std::vector<Vec3f>(points)}; }
+
+void store(const Estimate& estimate, std::size_t point, Illumination& all) {
+  all.value[point] = estimate.value;
+  all.standard_error[point] = estimate.standard_error;
 }
 
 template <class Function>
@@ -104,26 +101,24 @@ void for_each_point(std::size_t points, const Control& control, const Function& 
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control) {
   const Sampling sampling(tracer, lights, options);
-  Illumination result;
-  result.value.resize(points.size());
-  result.standard_error.resize(points.size());
+  Illumination result = sized(points.size());
   for_each_point(points.size(), control, [&](std::size_t i) {
-    const Estimate e = estimate(sampling, points[i], std::uint32_t(i));
-    result.value[i] = e.value;
-    result.standard_error[i] = e.standard_error;
+    std::vector<Vec3f> not_taken_apart;
+    store(estimate(sampling, points[i], std::uint32_t(i), not_taken_apart), i, result);
   });
   return result;
 }
 
-std::vector<std::vector<Vec3f>> trace_illumination_per_light(const RayTracer& tracer,
-                                                             std::span<const SurfaceSample> points,
-                                                             const Lights& lights, const TraceOptions& options,
-                                                             const Control& control) {
+IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::span<const SurfaceSample> points,
+                                                const Lights& lights, const TraceOptions& options,
+                                                const Control& control) {
   const Sampling sampling(tracer, lights, options);
-  std::vector<std::vector<Vec3f>> result(lights.size(), std::vector<Vec3f>(points.size()));
+  IlluminationByLight result{sized(points.size()),
+                             std::vector<std::vector<Vec3f>>(lights.size(), std::vector<Vec3f>(points.size()))};
   for_each_point(points.size(), control, [&](std::size_t i) {
-    const std::vector<Vec3f> per_light = estimate_per_light(sampling, points[i], std::uint32_t(i));
-    for (std::size_t l = 0; l < lights.size(); ++l) result[l][i] = per_light[l];
+    std::vector<Vec3f> per_light(sampling.paths.emission_source() + 1);
+    store(estimate(sampling, points[i], std::uint32_t(i), per_light), i, result.total);
+    for (std::size_t l = 0; l < lights.size(); ++l) result.of_light[l][i] = per_light[l];
   });
   return result;
 }

@@ -27,11 +27,15 @@ struct Illumination {
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control = {});
 
-// The same taken apart: [l][i] is what light l brings to point i. What emissive surfaces bring is left out.
-std::vector<std::vector<Vec3f>> trace_illumination_per_light(const RayTracer& tracer,
-                                                             std::span<const SurfaceSample> points,
-                                                             const Lights& lights, const TraceOptions& options,
-                                                             const Control& control = {});
+struct IlluminationByLight {
+  Illumination total;                        // with what emissive surfaces bring
+  std::vector<std::vector<Vec3f>> of_light;  // [l][i]: what light l brings to point i
+};
+
+// The same, also taken apart.
+IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::span<const SurfaceSample> points,
+                                                const Lights& lights, const TraceOptions& options,
+                                                const Control& control = {});
 
 // sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give.
 double relative_standard_error(const Illumination& illumination);

@@ -167,7 +167,7 @@ void print_row(std::size_t lights, const NamedMethod& method, const Row& row) {
 SolveResult solve_by(const Measurement& with, const Target& target, SolveMethod method) {
   SolveOptions options;
   options.method = method;
-  options.verification_samples = 32;
+  options.verification_samples = 256;
   options.important_vertices = with.options.important_vertices;
   return solve({with.stage.tracer, target, with.bake.file(), {}, with.bake.settings(), {}}, options);
 }

@@ -15,12 +15,6 @@ namespace chiaro::inverse::tests {
 using Eigen::Array3d;
 using Eigen::Vector3d;
 
-inline renderer::Lights point_lights(const LightEstimates& lights) {
-  renderer::Lights result;
-  for (const LightEstimate& l : lights) result.emplace_back(point_light(l));
-  return result;
-}
-
 inline BakeSettings bake_settings(int bounces) {
   BakeSettings settings;
   settings.samples = 64;

@@ -176,7 +176,7 @@ TEST(Solve, KeptLightsStayAndAreNotFoundAgain) {
   const LightEstimates known = known_lights(2);
   const Target target = corner.target(known, 0);
   SolveProblem problem = problem_of(corner, target, 0);
-  problem.kept_lights = tests::point_lights({known[0]});
+  problem.kept_lights = point_lights({known[0]});
   const SolveResult result = solve(problem, quick());
   ASSERT_EQ(result.lights.size(), 1U);
   EXPECT_LT(farthest_from({known[1]}, positions_of(result)), 0.01 * corner.diagonal());
@@ -313,7 +313,7 @@ TEST(Solve, TargetsThatNoLightCanProduceAreRefused) {
   // Darker than the lights that are kept.
   const Target lit = corner.target(known_lights(1), 0);
   SolveProblem outshone = problem_of(corner, lit, 0);
-  outshone.kept_lights = tests::point_lights(known_lights(1));
+  outshone.kept_lights = point_lights(known_lights(1));
   std::get<renderer::PointLight>(outshone.kept_lights[0]).intensity *= 2;
   expect_said(error_of(outshone, quick()), "no light possible");
 }

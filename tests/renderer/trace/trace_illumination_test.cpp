@@ -45,7 +45,7 @@ TEST(TraceIllumination, SpotAndDirectionalLightsFollowTheirDefinitions) {
   EXPECT_NEAR(by_sun.value[0].x, 100 * std::sqrt(0.5F) / kPi, 1e-4);
 }
 
-TEST(TraceIllumination, PerLightIsTheSameTakenApart) {
+TEST(TraceIllumination, ByLightIsTheSameTakenApart) {
   Scene scene;
   add_mesh(scene, test::room({4, 3, 4}), lambert({0.5F, 0.6F, 0.7F}), "room");
   const RayTracer tracer(scene);
@@ -54,7 +54,10 @@ TEST(TraceIllumination, PerLightIsTheSameTakenApart) {
   for (const int bounces : {0, 3}) {
     const TraceOptions options{.samples = 30, .bounces = bounces, .seed = 5};
     const auto whole = trace_illumination(tracer, points, lights, options);
-    const auto parts = trace_illumination_per_light(tracer, points, lights, options);
+    const IlluminationByLight by_light = trace_illumination_by_light(tracer, points, lights, options);
+    const auto& parts = by_light.of_light;
+    EXPECT_EQ(by_light.total.value, whole.value);
+    EXPECT_EQ(by_light.total.standard_error, whole.standard_error);
     ASSERT_EQ(parts.size(), 2U);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_GT(parts[0][i].x, 0);

@@ -1,0 +1,162 @@
+#include "inverse/solve/instrumental_fit.h"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "inverse/numerics/median.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr int kSteps = 12;
+constexpr double kStepAtRest = 1e-5;   // of the region's diagonal
+constexpr double kLongestStep = 0.01;  // of the region's diagonal
+constexpr double kOutlier = 3;         // medians
+constexpr double kFirefly = 10;        // medians
+constexpr double kLeastScale = 1e-3;   // of a receiver's brightness
+constexpr double kDark = 0.1;          // brightness that residuals are compared with at least, in means of all
+constexpr double kDamping = 1e-9;      // of the normal matrix' diagonal
+constexpr double kDarkest = 1e-20;     // candela: a channel that shines
+
+Column residual_of(const Observations& observations, const std::vector<ColumnWithGradient>& direct,
+                   const std::vector<Column>& indirect, const LightEstimates& lights) {
+  Column residual = -observations.wanted;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    residual += (direct[j].value + indirect[j]) * lights[j].intensity.matrix().asDiagonal();
+  }
+  return residual;
+}
+
+// Of receivers whose residuals are beyond so many medians little is left.
+Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Column& residual, double outlier) {
+  const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
+  const Eigen::ArrayXd relative = residual.rowwise().norm().array() / brightness.max(kDark * brightness.mean());
+  const double scale = std::max(kLeastScale, outlier * numerics::median({relative.begin(), relative.end()}));
+  return observations.sqrt_weight.array() / (1 + (relative / scale).square());
+}
+
+// Unknowns: x, y, z of each light, then red, green, blue of each. Instruments are the derivatives of direct light.
+Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct, const std::vector<Column>& indirect,
+                                  const LightEstimates& lights, const Column& residual,
+                                  const Eigen::VectorXd& sqrt_weight) {
+  const auto n = Eigen::Index(lights.size());
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6 * n, 6 * n);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6 * n);
+  for (int c = 0; c < 3; ++c) {
+    Eigen::MatrixXd instruments(residual.rows(), 4 * n);
+    Eigen::MatrixXd by_bounces(residual.rows(), n);
+    std::vector<Eigen::Index> unknown(std::size_t(4 * n));
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const ColumnWithGradient& column = direct[std::size_t(j)];
+      for (int a = 0; a < 3; ++a) {
+        instruments.col(3 * j + a) =
+            lights[std::size_t(j)].intensity[c] * sqrt_weight.cwiseProduct(column.gradient[a].col(c));
+        unknown[std::size_t(3 * j + a)] = 3 * j + a;
+      }
+      instruments.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(c));
+      by_bounces.col(j) = sqrt_weight.cwiseProduct(indirect[std::size_t(j)].col(c));
+      unknown[std::size_t(3 * n + j)] = 3 * n + 3 * j + c;
+    }
+    Eigen::MatrixXd products = instruments.transpose() * instruments;
+    products.rightCols(n) += instruments.transpose() * by_bounces;
+    normal(unknown, unknown) += products;
+    gradient(unknown) += instruments.transpose() * sqrt_weight.cwiseProduct(residual.col(c));
+  }
+  normal.diagonal() *= 1 + kDamping;
+  // A light that has no effect has no row.
+  for (Eigen::Index k = 0; k < 6 * n; ++k) normal(k, k) += normal(k, k) > 0 ? 0 : 1;
+  return -normal.partialPivLu().solve(gradient);
+}
+
+// As far as the step goes, within the region and the longest step; true: it moved.
+bool take(const Eigen::VectorXd& step, const LightResponse& response, LightEstimates& lights) {
+  const double diagonal = double(response.grid().region.diagonal());
+  double longest = 0;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    longest = std::max(longest, step.segment<3>(Eigen::Index(3 * j)).norm());
+  }
+  const double part = std::min(1.0, kLongestStep * diagonal / std::max(longest, 1e-300));
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    LightEstimate& light = lights[j];
+    const Eigen::Vector3d moved = light.position + part * step.segment<3>(Eigen::Index(3 * j));
+    light.position = response.places().nearest(moved).value_or(light.position);
+    const auto change = step.segment<3>(Eigen::Index(3 * (lights.size() + j)));
+    light.intensity = (light.intensity + part * change.array()).max(0);
+  }
+  return longest > kStepAtRest * diagonal;
+}
+
+// Intensities of one channel, none negative: those that would be are held at zero.
+Eigen::VectorXd solve_with_instruments(const Eigen::MatrixXd& normal, const Eigen::VectorXd& wanted) {
+  std::vector<Eigen::Index> lit;
+  for (Eigen::Index j = 0; j < normal.rows(); ++j) {
+    if (normal(j, j) > 0) lit.push_back(j);
+  }
+  Eigen::VectorXd intensity = Eigen::VectorXd::Zero(normal.rows());
+  while (!lit.empty()) {
+    const Eigen::VectorXd solution = normal(lit, lit).partialPivLu().solve(Eigen::VectorXd(wanted(lit)));
+    if (solution.allFinite() && solution.minCoeff() >= 0) {
+      intensity(lit) = solution;
+      break;
+    }
+    Eigen::Index darkest = 0;
+    if (solution.allFinite()) solution.minCoeff(&darkest);
+    lit.erase(lit.begin() + darkest);
+  }
+  return intensity;
+}
+
+}  // namespace
+
+Column unity_indirect(const Column& traced, const Column& direct, const Eigen::Array3d& intensity) {
+  const auto shines = (intensity > kDarkest).eval();
+  const Eigen::Array3d per_candela = shines.select(intensity.inverse(), 0);
+  return traced * per_candela.matrix().asDiagonal() - direct * shines.cast<double>().matrix().asDiagonal();
+}
+
+void descend_with_instruments(const LightResponse& response, const Observations& observations,
+                              const std::vector<Column>& indirect, LightEstimates& lights) {
+  for (int k = 0; k < kSteps; ++k) {
+    const std::vector<ColumnWithGradient> direct = evaluate_columns_with_gradient(response, lights);
+    const Column residual = residual_of(observations, direct, indirect, lights);
+    const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kOutlier);
+    const Eigen::VectorXd step = gauss_newton_step(direct, indirect, lights, residual, weight);
+    if (!step.allFinite() || !take(step, response, lights)) return;
+  }
+}
+
+double fit_intensities_with_instruments(const LightResponse& response, const Observations& observations,
+                                        const std::vector<Column>& indirect, LightEstimates& lights) {
+  const std::vector<Column> direct = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
+  std::vector<Column> all = direct;
+  for (std::size_t j = 0; j < lights.size(); ++j) all[j] += indirect[j];
+  const Eigen::Index receivers = observations.wanted.rows(), n = Eigen::Index(lights.size());
+  const Column left = total_illumination(all, lights, receivers) - observations.wanted;
+  const Eigen::VectorXd weight = robust_sqrt_weight(observations, left, kFirefly).cwiseAbs2();
+  for (int c = 0; c < 3; ++c) {
+    Eigen::MatrixXd normal(n, n);
+    Eigen::VectorXd wanted(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Eigen::VectorXd instrument = weight.cwiseProduct(direct[std::size_t(j)].col(c));
+      for (Eigen::Index k = 0; k < n; ++k) normal(j, k) = instrument.dot(all[std::size_t(k)].col(c));
+      wanted[j] = instrument.dot(observations.wanted.col(c));
+    }
+    const Eigen::VectorXd intensity = solve_with_instruments(normal, wanted);
+    for (Eigen::Index j = 0; j < n; ++j) lights[std::size_t(j)].intensity[c] = intensity[j];
+  }
+  return relative_error(observations, total_illumination(all, lights, receivers));
+}
+
+LightIntervals intervals_with_instruments(const LightResponse& response, const Observations& observations,
+                                          const std::vector<Column>& indirect, const LightEstimates& lights) {
+  if (lights.empty()) return {};
+  std::vector<ColumnWithGradient> columns = evaluate_columns_with_gradient(response, lights);
+  const Column residual = residual_of(observations, columns, indirect, lights);
+  const Derivatives instruments = derivatives_of(columns, lights);
+  for (std::size_t j = 0; j < lights.size(); ++j) columns[j].value += indirect[j];
+  const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kFirefly).cwiseAbs2();
+  return light_intervals({derivatives_of(columns, lights), instruments, residual, weight}, lights);
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,220 @@
+#include "inverse/solve/settle_by_trace.h"
+
+#include <algorithm>
+
+#include "inverse/solve/directly_lit.h"
+#include "inverse/solve/instrumental_fit.h"
+#include "inverse/solve/observe_target.h"
+#include "inverse/solve/polish_lights.h"
+#include "inverse/transport/eigen_vectors.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr int kRounds = 3;
+// Traces of less tell less than the important vertices did.
+constexpr double kLeastPaths = 2e6;   // of all receivers together …
+constexpr int kEnoughSamples = 256;   // … or so many per receiver
+constexpr std::size_t kMany = 30000;  // receivers at most
+constexpr double kNear = 1e-3;        // of the region's diagonal: of all light, that by bounces hardly changes
+constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
+constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
+constexpr double kGain = 0.01;        // of the squared error: what a light must explain
+
+std::vector<Vec3f> chosen_of(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen) {
+  std::vector<Vec3f> some;
+  for (const std::size_t i : chosen) some.push_back(values[i]);
+  return some;
+}
+
+// Lights that may move, as they were traced and as they are now.
+struct FreeLights {
+  LightEstimates traced, now;
+  std::vector<Column> brought;      // by each as traced
+  std::vector<Column> indirect;     // of it by bounces, at 1 cd
+  std::vector<std::size_t> number;  // in the trace
+
+  void remove(std::size_t j) {
+    const auto at = std::ptrdiff_t(j);
+    number.erase(number.begin() + at);
+    traced.erase(traced.begin() + at);
+    now.erase(now.begin() + at);
+    brought.erase(brought.begin() + at);
+    indirect.erase(indirect.begin() + at);
+  }
+};
+
+// Receivers, and what they want of the free lights.
+struct Bench {
+  const LightResponse& response;
+  Observations observations;
+
+  double descend(FreeLights& free) const {
+    descend_with_instruments(response, observations, free.indirect, free.now);
+    return fit_intensities_with_instruments(response, observations, free.indirect, free.now);
+  }
+  LightIntervals intervals(const FreeLights& free) const {
+    return intervals_with_instruments(response, observations, free.indirect, free.now);
+  }
+  double norm(const Column& light) const { return (observations.sqrt_weight.asDiagonal() * light).norm(); }
+};
+
+// Its intensity may as well be none.
+bool is_doubtful(const LightEstimate& light, const LightInterval& interval) {
+  return (light.intensity < kDoubtful * interval.intensity).all();
+}
+
+// Without the lights that the others do as well without; one always stays. Returns how sure those are that stay.
+LightIntervals remove_needless(const Bench& bench, double error, FreeLights& free) {
+  LightIntervals intervals = bench.intervals(free);
+  for (std::size_t j = 0; j < free.now.size() && free.now.size() > 1;) {
+    FreeLights others = free;
+    others.remove(j);
+    const double without = is_doubtful(free.now[j], intervals.lights[j]) ? bench.descend(others) : 2 * error;
+    if (without * without > (1 + kGain) * error * error) {
+      ++j;
+      continue;
+    }
+    free = std::move(others);
+    error = without;
+    intervals = bench.intervals(free);
+    j = 0;
+  }
+  return intervals;
+}
+
+// Direct light alone tells of lights here: none of them may be hidden from nearly all receivers.
+bool any_hidden(const Bench& bench, const FreeLights& free) {
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    const Column indirect = free.indirect[j] * free.traced[j].intensity.matrix().asDiagonal();
+    if (bench.norm(free.brought[j] - indirect) < kLeastDirect * bench.norm(free.brought[j])) return true;
+  }
+  return false;
+}
+
+// Two lights in one place, of which the sum alone is known.
+bool any_share_a_place(const LightEstimates& lights, double distance) {
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    for (std::size_t k = j + 1; k < lights.size(); ++k) {
+      if ((lights[j].position - lights[k].position).norm() < distance) return true;
+    }
+  }
+  return false;
+}
+
+// The light by bounces would hardly be another if it were traced again.
+bool at_rest(const Bench& bench, const FreeLights& free, double near) {
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    const double share = bench.norm(free.brought[j]) / bench.observations.target_norm;
+    if (share * (free.now[j].position - free.traced[j].position).norm() > near) return false;
+  }
+  return true;
+}
+
+bool too_noisy(const SolveOptions& options, std::size_t receivers) {
+  const int samples = verification_samples(options, receivers);
+  return samples < kEnoughSamples && double(samples) * double(receivers) < kLeastPaths;
+}
+
+// The problem, and where its lights are settled.
+struct Settling {
+  const Target& target;
+  ReceiverDraw draw;
+  DirectlyLit some, all;  // receivers: those drawn, and all
+  std::size_t held;
+  bool may_remove;
+  double near;  // metres
+};
+
+std::vector<Column> direct_columns(const DirectlyLit& receivers, const LightEstimates& lights) {
+  return evaluate_columns(receivers.response(), lights, Evaluation::kTracedVisibility);
+}
+
+FreeLights free_lights(const Settling& with, const LightEstimates& lights, const FreshTrace& traced) {
+  FreeLights free;
+  free.traced.assign(lights.begin() + std::ptrdiff_t(with.held), lights.end());
+  free.now = free.traced;
+  const std::vector<Column> direct = direct_columns(with.some, free.now);
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    free.brought.push_back(column_of(chosen_of(traced.of_light[with.held + j], with.draw.chosen)));
+    free.indirect.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
+    free.number.push_back(with.held + j);
+  }
+  return free;
+}
+
+// What the receivers drawn want of the free lights.
+Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& traced) {
+  Observations observations = observe_target(with.target, with.draw, chosen_of(traced.all.value, with.draw.chosen));
+  for (const Column& brought : free.brought) observations.wanted += brought;
+  return with.held > 0 ? with_capped_weights(observations) : observations;
+}
+
+// The illumination that was traced becomes that of the lights where they are now.
+void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
+  std::vector<Vec3f>& illumination = traced.all.value;
+  Column change = Column::Zero(Eigen::Index(illumination.size()), 3);
+  for (std::size_t j = with.held; j < traced.of_light.size(); ++j) change -= column_of(traced.of_light[j]);
+  const std::vector<Column> before = direct_columns(with.all, free.traced), now = direct_columns(with.all, free.now);
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    const Column brought = column_of(traced.of_light[free.number[j]]);
+    const Column indirect = unity_indirect(brought, before[j], free.traced[j].intensity);
+    change += (now[j] + indirect) * free.now[j].intensity.matrix().asDiagonal();
+  }
+  for (std::size_t i = 0; i < illumination.size(); ++i) {
+    illumination[i] += to_vec3f(change.row(Eigen::Index(i)).transpose());
+  }
+}
+
+LightEstimates joined(const Settling& with, const LightEstimates& lights, const FreeLights& free) {
+  LightEstimates all(lights.begin(), lights.begin() + std::ptrdiff_t(with.held));
+  all.insert(all.end(), free.now.begin(), free.now.end());
+  return all;
+}
+
+}  // namespace
+
+LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                           const LightEstimates& lights, StageClock& clock) {
+  LightsByTrace by_trace{lights, trace_afresh(problem, point_lights(lights), options, control)};
+  clock.finish("verification", {{"relative_standard_error", relative_standard_error(by_trace.traced.all)}});
+  return by_trace;
+}
+
+LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& options,
+                              const renderer::Control& control, const LightResponse& search, const Optimum& found,
+                              StageClock& clock) {
+  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const Settling with{problem.target,
+                      draw,
+                      {problem.tracer, search, samples_at(problem.target, draw.chosen)},
+                      {problem.tracer, search, problem.target.receivers.samples},
+                      found.held,
+                      options.exact_lights == 0,
+                      kNear * double(search.grid().region.diagonal())};
+  LightEstimates lights;
+  for (const LightEstimate& light : found.lights) lights.push_back({light.position, light.intensity});
+  double seconds = 0;
+  for (int round = 1;; ++round) {
+    LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
+    by_trace.settling_seconds = seconds;
+    if (too_noisy(options, problem.target.receivers.size()) || any_share_a_place(lights, with.near)) return by_trace;
+    FreeLights free = free_lights(with, lights, by_trace.traced);
+    const Bench bench{with.some.response(), wanted_of(with, free, by_trace.traced)};
+    if (any_hidden(bench, free)) return by_trace;
+    const double error = bench.descend(free);
+    LightIntervals intervals = with.may_remove ? remove_needless(bench, error, free) : bench.intervals(free);
+    const bool rests = at_rest(bench, free, with.near);
+    lights = joined(with, lights, free);
+    if (rests) {
+      follow(with, free, by_trace.traced);
+      by_trace.lights = lights;
+      if (found.held == 0) by_trace.intervals = std::move(intervals);
+    }
+    seconds += clock.finish("settling", {{"lights", double(lights.size())}, {"at_rest", rests ? 1 : 0}});
+    by_trace.settling_seconds = seconds;
+    if (rests || round == kRounds) return by_trace;
+  }
+}
+
+}  // namespace chiaro::inverse
