@@ -1,16 +1,18 @@
 #include "inverse/solve/instrumental_fit.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <Eigen/LU>
 
 #include "inverse/numerics/median.h"
+#include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr int kSteps = 12;
-constexpr double kStepAtRest = 1e-5;   // of the region's diagonal
+constexpr double kStepAtRest = 3e-5;   // of the region's diagonal
 constexpr double kLongestStep = 0.01;  // of the region's diagonal
 constexpr double kOutlier = 3;         // medians
 constexpr double kFirefly = 10;        // medians
@@ -36,32 +38,51 @@ Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Colum
   return observations.sqrt_weight.array() / (1 + (relative / scale).square());
 }
 
-// Unknowns: x, y, z of each light, then red, green, blue of each. Instruments are the derivatives of direct light.
+// What one channel says of its unknowns: x, y, z of each light, then the channel's intensity of each.
+struct ChannelSystem {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd gradient;
+};
+
+// Instruments are the derivatives of direct light.
+ChannelSystem channel_system(const std::vector<ColumnWithGradient>& direct, const std::vector<Column>& indirect,
+                             const LightEstimates& lights, const Column& residual, const Eigen::VectorXd& sqrt_weight,
+                             int channel) {
+  const auto n = Eigen::Index(lights.size());
+  Eigen::MatrixXd instruments(residual.rows(), 4 * n);
+  Eigen::MatrixXd by_bounces(residual.rows(), n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const ColumnWithGradient& column = direct[std::size_t(j)];
+    for (int a = 0; a < 3; ++a) {
+      instruments.col(3 * j + a) =
+          lights[std::size_t(j)].intensity[channel] * sqrt_weight.cwiseProduct(column.gradient[a].col(channel));
+    }
+    instruments.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(channel));
+    by_bounces.col(j) = sqrt_weight.cwiseProduct(indirect[std::size_t(j)].col(channel));
+  }
+  ChannelSystem system;
+  system.normal = instruments.transpose() * instruments;
+  system.normal.rightCols(n) += instruments.transpose() * by_bounces;
+  system.gradient = instruments.transpose() * sqrt_weight.cwiseProduct(residual.col(channel));
+  return system;
+}
+
+// Unknowns: x, y, z of each light, then red, green, blue of each.
 Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct, const std::vector<Column>& indirect,
                                   const LightEstimates& lights, const Column& residual,
                                   const Eigen::VectorXd& sqrt_weight) {
   const auto n = Eigen::Index(lights.size());
+  std::array<ChannelSystem, 3> systems;
+  renderer::parallel_for(
+      3, [&](std::size_t c) { systems[c] = channel_system(direct, indirect, lights, residual, sqrt_weight, int(c)); });
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6 * n);
-  for (int c = 0; c < 3; ++c) {
-    Eigen::MatrixXd instruments(residual.rows(), 4 * n);
-    Eigen::MatrixXd by_bounces(residual.rows(), n);
-    std::vector<Eigen::Index> unknown(std::size_t(4 * n));
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const ColumnWithGradient& column = direct[std::size_t(j)];
-      for (int a = 0; a < 3; ++a) {
-        instruments.col(3 * j + a) =
-            lights[std::size_t(j)].intensity[c] * sqrt_weight.cwiseProduct(column.gradient[a].col(c));
-        unknown[std::size_t(3 * j + a)] = 3 * j + a;
-      }
-      instruments.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(c));
-      by_bounces.col(j) = sqrt_weight.cwiseProduct(indirect[std::size_t(j)].col(c));
-      unknown[std::size_t(3 * n + j)] = 3 * n + 3 * j + c;
-    }
-    Eigen::MatrixXd products = instruments.transpose() * instruments;
-    products.rightCols(n) += instruments.transpose() * by_bounces;
-    normal(unknown, unknown) += products;
-    gradient(unknown) += instruments.transpose() * sqrt_weight.cwiseProduct(residual.col(c));
+  std::vector<Eigen::Index> unknown(std::size_t(4 * n));
+  std::iota(unknown.begin(), unknown.end(), Eigen::Index{0});
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    for (Eigen::Index j = 0; j < n; ++j) unknown[std::size_t(3 * n + j)] = 3 * n + 3 * j + c;
+    normal(unknown, unknown) += systems[std::size_t(c)].normal;
+    gradient(unknown) += systems[std::size_t(c)].gradient;
   }
   normal.diagonal() *= 1 + kDamping;
   // A light that has no effect has no row.

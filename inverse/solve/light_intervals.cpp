@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "renderer/core/control.h"
+
 namespace chiaro::inverse {
 namespace {
 
@@ -63,23 +65,30 @@ Inverse invert(const FitAtRest& fit) {
   return result;
 }
 
-// Receivers × parameters: how far each pulls, with what it would leave if it were left out of the fit.
-Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
-  Eigen::MatrixXd pull(fit.weight.size(), inverse.cols());
+// How far a receiver pulls at each parameter, with what it would leave if it were left out of the fit.
+Eigen::RowVectorXd pull_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse, Eigen::Index receiver) {
   Eigen::Matrix<double, 3, Eigen::Dynamic> derivative(3, inverse.cols()), instrument(3, inverse.cols());
-  for (Eigen::Index i = 0; i < fit.weight.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      derivative.row(c) = fit.derivatives[std::size_t(c)].row(i);
-      instrument.row(c) = fit.instruments[std::size_t(c)].row(i);
-    }
-    const Eigen::Matrix3d leverage = fit.weight[i] * derivative * inverse * instrument.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen((leverage + leverage.transpose()) / 2);
-    const Eigen::Vector3d outside = (1 - eigen.eigenvalues().array()).max(kLeastOutside).inverse();
-    const Eigen::Vector3d left_out = eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose() *
-                                     fit.residual.row(i).transpose();
-    pull.row(i) = fit.weight[i] * left_out.transpose() * instrument;
+  for (int c = 0; c < 3; ++c) {
+    derivative.row(c) = fit.derivatives[std::size_t(c)].row(receiver);
+    instrument.row(c) = fit.instruments[std::size_t(c)].row(receiver);
   }
-  return pull;
+  const Eigen::Matrix3d leverage = fit.weight[receiver] * derivative * inverse * instrument.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen((leverage + leverage.transpose()) / 2);
+  const Eigen::Vector3d outside = (1 - eigen.eigenvalues().array()).max(kLeastOutside).inverse();
+  const Eigen::Vector3d left_out = eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose() *
+                                   fit.residual.row(receiver).transpose();
+  return fit.weight[receiver] * left_out.transpose() * instrument;
+}
+
+Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
+  constexpr Eigen::Index kBlock = 256;
+  Eigen::MatrixXd pulls(fit.weight.size(), inverse.cols());
+  renderer::parallel_for(std::size_t((pulls.rows() + kBlock - 1) / kBlock), [&](std::size_t block) {
+    const Eigen::Index first = Eigen::Index(block) * kBlock;
+    for (Eigen::Index i = first; i < std::min(pulls.rows(), first + kBlock); ++i)
+      pulls.row(i) = pull_of(fit, inverse, i);
+  });
+  return pulls;
 }
 
 // What one light has more the other has less, by as much as they shine.
