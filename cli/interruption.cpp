@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "cli/program.h"
+#include "renderer/core/atomic_file.h"
 
 namespace chiaro::cli {
 namespace {
@@ -14,7 +15,9 @@ std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 void handle_signal(int) {
-  if (interrupted.exchange(true)) _exit(kInterrupted);
+  if (!interrupted.exchange(true)) return;
+  renderer::remove_unfinished_files();
+  _exit(kInterrupted);
 }
 
 }  // namespace
@@ -22,7 +25,7 @@ void handle_signal(int) {
 void install_signal_handlers() {
   struct sigaction action = {};
   action.sa_handler = handle_signal;
-  action.sa_flags = SA_RESTART;
+  action.sa_flags = 0;  // who waits for a pipe waits no longer
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);

@@ -29,9 +29,14 @@ std::string lower_case(std::string text) {
 
 // Permissions alone do not tell: a folder may be on a read-only or a virtual file system.
 void try_to_make_file(const std::filesystem::path& folder, const std::filesystem::path& wanted) {
-  const std::filesystem::path probe = folder / fmt::format(".{}.{}.probe", wanted.stem().string(), ::getpid());
+  const auto fail = [&] {
+    throw Error({wanted.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
+  };
+  struct stat there {};
+  if (::stat(wanted.c_str(), &there) != 0 && errno == ENAMETOOLONG) fail();
+  const std::filesystem::path probe = folder / fmt::format(".chiaro.{}.probe", ::getpid());
   const int file = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
-  if (file < 0) throw Error({wanted.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
+  if (file < 0) fail();
   ::close(file);
   ::unlink(probe.c_str());
 }

@@ -66,6 +66,7 @@ std::string one_line(const std::string& text) {
 
 void print(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  if (errno == EINTR) throw renderer::Interruption();
   throw renderer::Error({"standard output", "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
 }
 

@@ -107,6 +107,12 @@ bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimat
 
 }  // namespace
 
+LightIntervals unknown_intervals(std::size_t lights) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  return {std::vector<LightInterval>(lights, {Eigen::Vector3d::Constant(infinity), Eigen::Array3d::Constant(infinity)}),
+          {}};
+}
+
 Derivatives derivatives_of(const std::vector<ColumnWithGradient>& columns, const LightEstimates& lights) {
   return {jacobian(columns, lights, 0), jacobian(columns, lights, 1), jacobian(columns, lights, 2)};
 }
@@ -135,6 +141,7 @@ LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& light
 LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
                                const LightEstimates& lights) {
   if (lights.empty()) return {};
+  if (lights.size() > kMostLightsWithIntervals) return unknown_intervals(lights.size());
   const std::vector<ColumnWithGradient> columns = evaluate_columns_with_gradient(response, lights);
   const Derivatives derivatives = derivatives_of(columns, lights);
   Column residual = -observations.wanted;

@@ -17,9 +17,15 @@ struct LightIntervals {
   std::vector<std::pair<std::size_t, std::size_t>> confounded;  // only the sum of both intensities is known
 };
 
+// Of more nothing is computed: time and memory grow with their third and second power.
+inline constexpr std::size_t kMostLightsWithIntervals = 100;
+
+// All infinite.
+LightIntervals unknown_intervals(std::size_t lights);
+
 // How sure the least-squares lights are, from derivatives at fixed visibility and from what the fit leaves, which holds
 // the noise of the target and the errors of transport alike; no noise need be known. Infinite
-// where receivers tell nothing of a parameter.
+// where receivers tell nothing of a parameter, and for too many lights.
 // Source: White, A heteroskedasticity-consistent covariance matrix estimator and a direct test for heteroskedasticity,
 // 1980; a receiver's channels count as one cluster. MacKinnon, White, Some heteroskedasticity-consistent covariance
 // matrix estimators with improved finite sample properties, 1985 (HC3); Bell, McCaffrey, Bias reduction in standard

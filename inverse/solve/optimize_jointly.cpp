@@ -52,7 +52,7 @@ LightEstimates without_negligible(const LightResponse& response, const Observati
   std::size_t kept_beside = 0;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
-    const bool nowhere = !intervals[j].position.array().isFinite().any();
+    const bool nowhere = lights.size() <= kMostLightsWithIntervals && !intervals[j].position.array().isFinite().any();
     if (norm > (nowhere ? kHardlySeen : kNegligible) * judged.target_norm) {
       kept.push_back(lights[j]);
       kept_beside += j < beside_surfaces ? 1 : 0;

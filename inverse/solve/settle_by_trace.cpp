@@ -12,7 +12,6 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr int kRounds = 3;
-// Traces of less tell less than the important vertices did.
 constexpr double kLeastPaths = 2e6;   // of all receivers together …
 constexpr int kEnoughSamples = 256;   // … or so many per receiver
 constexpr std::size_t kMany = 30000;  // receivers at most
@@ -111,9 +110,11 @@ bool at_rest(const Bench& bench, const FreeLights& free, double near) {
   return true;
 }
 
-bool too_noisy(const SolveOptions& options, std::size_t receivers) {
+// It would take too long, or tell less than the important vertices did.
+bool is_worth_it(const SolveOptions& options, std::size_t receivers, std::size_t lights) {
   const int samples = verification_samples(options, receivers);
-  return samples < kEnoughSamples && double(samples) * double(receivers) < kLeastPaths;
+  const bool precise = samples >= kEnoughSamples || double(samples) * double(receivers) >= kLeastPaths;
+  return precise && lights <= kMostLightsWithIntervals;
 }
 
 // The problem, and where its lights are settled.
@@ -198,7 +199,8 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   for (int round = 1;; ++round) {
     LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
     by_trace.settling_seconds = seconds;
-    if (too_noisy(options, problem.target.receivers.size()) || any_share_a_place(lights, with.near)) return by_trace;
+    if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) return by_trace;
+    if (any_share_a_place(lights, with.near)) return by_trace;
     FreeLights free = free_lights(with, lights, by_trace.traced);
     const Bench bench{with.some.response(), wanted_of(with, free, by_trace.traced)};
     if (any_hidden(bench, free)) return by_trace;

@@ -1,11 +1,15 @@
 #include "renderer/core/atomic_file.h"
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -32,7 +36,74 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
 
+// Hidden, of the same kind, and no longer than names may be.
+std::filesystem::path name_aside(const std::filesystem::path& path) {
+  const std::string end = fmt::format(".{}.part{}", ::getpid(), path.extension().string());
+  const std::string stem = path.stem().string();
+  return folder_of(path) / ('.' + stem.substr(0, NAME_MAX - 1 - std::min<std::size_t>(end.size(), NAME_MAX - 1)) + end);
+}
+
+// Where a signal handler finds the names of the files being written.
+struct UnfinishedName {
+  std::atomic<bool> taken = false, whole = false;
+  std::array<char, PATH_MAX> path{};
+};
+std::array<UnfinishedName, 8> unfinished_names;
+
+// A name that a signal handler removes, while this lives. Where too many are being written it is none of them.
+class Unfinished {
+ public:
+  explicit Unfinished(const std::filesystem::path& path) {
+    if (path.native().size() >= PATH_MAX) return;
+    for (UnfinishedName& name : unfinished_names) {
+      if (name.taken.exchange(true)) continue;
+      std::memcpy(name.path.data(), path.c_str(), path.native().size() + 1);
+      name.whole = true;
+      name_ = &name;
+      return;
+    }
+  }
+  ~Unfinished() {
+    if (name_ == nullptr) return;
+    name_->whole = false;
+    name_->taken = false;
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+ private:
+  UnfinishedName* name_ = nullptr;
+};
+
+// Closes the file that it is given.
+class OpenFile {
+ public:
+  explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+[[noreturn]] void cannot_read(const std::filesystem::path& path, int code) {
+  if (code == EINTR) throw Interruption();
+  if (code == ENOENT) throw Error({path.string(), "", "no such file", ""});
+  throw Error({path.string(), "", fmt::format("cannot be read: {}", std::strerror(code)), ""});
+}
+
 }  // namespace
+
+void remove_unfinished_files() {
+  for (const UnfinishedName& name : unfinished_names) {
+    if (name.whole) ::unlink(name.path.data());
+  }
+}
 
 void move_into_place(const std::filesystem::path& aside, const std::filesystem::path& path) {
   sync(aside, path);
@@ -52,8 +123,8 @@ void write_atomically(const std::filesystem::path& path,
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error({path.string(), "", "is a folder", "the name of a file"});
   }
-  const std::filesystem::path aside =
-      folder / fmt::format(".{}.{}.part{}", path.stem().string(), ::getpid(), path.extension().string());
+  const std::filesystem::path aside = name_aside(path);
+  const Unfinished unfinished(aside);
   try {
     write(aside);
     move_into_place(aside, path);
@@ -73,24 +144,24 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 }
 
 std::string read_file(const std::filesystem::path& path) {
-  std::error_code failed;
-  const std::filesystem::file_status status = std::filesystem::status(path, failed);
-  if (!std::filesystem::exists(status)) {
-    const bool missing = status.type() == std::filesystem::file_type::not_found;
-    throw Error({path.string(), "", missing ? "no such file" : "cannot be read: " + failed.message(), ""});
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) cannot_read(path, errno);
+  if (S_ISDIR(status.st_mode)) throw Error({path.string(), "", "is a folder", "a file"});
+  if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) throw Error({path.string(), "", "is a device", "a file"});
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.descriptor() < 0) cannot_read(path, errno);
+  constexpr std::size_t kPart = 1 << 16;  // of what does not tell its size, as pipes
+  const bool sized = S_ISREG(status.st_mode) && status.st_size > 0;
+  std::string bytes(sized ? std::size_t(status.st_size) : kPart, '\0');
+  std::size_t size = 0;
+  while (size < bytes.size() || !sized) {
+    if (size == bytes.size()) bytes.resize(2 * size);
+    const ssize_t count = ::read(file.descriptor(), bytes.data() + size, bytes.size() - size);
+    if (count < 0) cannot_read(path, errno);
+    if (count == 0) break;
+    size += std::size_t(count);
   }
-  if (std::filesystem::is_directory(status)) throw Error({path.string(), "", "is a folder", "a file"});
-  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
-    throw Error({path.string(), "", "is a device", "a file"});
-  }
-  std::ifstream stream(path, std::ios::binary);
-  std::error_code no_size;  // as pipes have none
-  const std::uintmax_t size = std::filesystem::file_size(path, no_size);
-  std::string bytes(no_size ? 0 : std::size_t(size), '\0');
-  stream.read(bytes.data(), std::streamsize(bytes.size()));
-  bytes.resize(std::size_t(stream.gcount()));
-  if (stream.good()) bytes.append(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-  if (stream.bad() || !stream.is_open()) throw Error({path.string(), "", "cannot be read", ""});
+  bytes.resize(size);
   return bytes;
 }
 

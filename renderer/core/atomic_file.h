@@ -19,7 +19,11 @@ void move_into_place(const std::filesystem::path& aside, const std::filesystem::
 // As write_atomically, for bytes in memory.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-// The bytes of a file; Error where it is missing, a folder, or unreadable.
+// Removes what is being written aside. For signal handlers that end the program.
+void remove_unfinished_files();
+
+// The bytes of a file; Error where it is missing, a folder, or unreadable; Interruption where a signal came while a pipe
+// was waited for.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace chiaro::renderer

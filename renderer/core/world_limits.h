@@ -10,6 +10,9 @@ namespace chiaro::renderer {
 // Metres from the origin, along any axis; fourth powers of distances remain floats.
 inline constexpr float kWorldLimit = 1e9F;
 
+// Metres across: below this rays leave surfaces by more than what is on them.
+inline constexpr float kLeastScene = 1e-5F;
+
 // Candela, lux or cd/m² of anything that gives light, and of what is wanted of it: a sun at the world's end.
 inline constexpr float kBrightest = 1e24F;
 

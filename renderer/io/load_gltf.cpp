@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/core/world_limits.h"
 #include "renderer/io/gltf_document.h"
 #include "renderer/io/gltf_environment.h"
 #include "renderer/io/gltf_lights.h"
@@ -44,6 +45,13 @@ std::size_t add_instances(const GltfDocument& document, const PlacedNode& node, 
   return meshes.in_node.empty() ? 0 : flattened;
 }
 
+void check_size(const GltfDocument& document, const Scene& scene) {
+  const float across = scene.instances.empty() ? kLeastScene : bounds(scene).diagonal();
+  if (across >= kLeastScene) return;
+  fail(document, "scene", fmt::format("all surfaces together are {:g} m across", across),
+       fmt::format("{:g} m or more: glTF's unit is the metre", kLeastScene));
+}
+
 void warn(std::vector<std::string>& warnings, std::size_t count, const char* what) {
   if (count > 0) warnings.push_back(fmt::format("{} {}", count, what));
 }
@@ -81,6 +89,7 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   std::size_t flattened = 0;
   for (std::size_t n = 0; n < nodes.size(); ++n)
     flattened += add_instances(document, nodes[n], meshes.of_node[n], scene);
+  check_size(document, scene);
   warn_of_repairs(meshes, flattened, loaded.warnings);
   if (scene.materials.empty()) scene.materials.push_back(default_material());
 

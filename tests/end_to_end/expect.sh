@@ -27,6 +27,13 @@ expect_error() {
   expect_no_leftovers
 }
 
+# handles_signals PID: it is past the start of the program.
+handles_signals() {
+  local caught
+  caught=$(sed -n 's/^SigCgt:\t//p' "/proc/$1/status" 2>/dev/null) || return 0
+  [ -z "$caught" ] || [ $((0x$caught & 2)) -ne 0 ]
+}
+
 # Files that were being written aside and stayed.
 expect_no_leftovers() {
   local found

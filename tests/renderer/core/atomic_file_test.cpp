@@ -57,6 +57,28 @@ TEST_F(AtomicFile, FailureLeavesNothingBehindAndTheOldFile) {
   EXPECT_EQ(files(), 1U);
 }
 
+TEST_F(AtomicFile, SignalHandlersRemoveWhatIsUnfinishedAndNothingElse) {
+  write_file_atomically(file(), "old");
+  const auto end_by_signal = [](const fs::path& aside) {
+    std::ofstream(aside) << "half";
+    remove_unfinished_files();
+    EXPECT_FALSE(fs::exists(aside));
+    throw Interruption();
+  };
+  EXPECT_THROW(write_atomically(file(), end_by_signal), Interruption);
+  remove_unfinished_files();
+  EXPECT_EQ(read_file(file()), "old");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFile, NamesMayBeAsLongAsTheFileSystemHasThem) {
+  const fs::path longest = folder_ / (std::string(251, 'a') + ".exr");
+  write_file_atomically(longest, "new");
+  EXPECT_EQ(read_file(longest), "new");
+  EXPECT_THROW(write_file_atomically(folder_ / (std::string(252, 'a') + ".exr"), "new"), Error);
+  EXPECT_EQ(files(), 1U);
+}
+
 TEST_F(AtomicFile, WritingNothingIsAnError) {
   write_file_atomically(file(), "old");
   EXPECT_THROW(write_atomically(file(), [](const fs::path&) {}), Error);
