@@ -147,6 +147,11 @@ const BadCase kBadCases[] = {
        g.root["nodes"][0]["scale"] = {2e9, 1, 1};
      },
      "nodes[0]: puts a vertex at 2e+09, 0, 0 (expected within 1e+09 m of the origin)"},
+    {"SceneTooSmallForRays",
+     [](GltfBuilder& g) {
+       g.root["nodes"][0]["scale"] = {1e-6, 1e-6, 1e-6};
+     },
+     "scene: all surfaces together are 1.41421e-06 m across (expected 1e-05 m or more"},
     {"CameraBeyondTheWorld",
      [](GltfBuilder& g) {
        g.root["cameras"] = J::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
