@@ -14,9 +14,11 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr std::size_t kMany = 50000;  // receivers at most
-constexpr int kLeastSamples = 64;     // paths per receiver
-constexpr double kNinety = 1.645;     // standard deviations to either side
+constexpr std::size_t kMany = 50000;       // receivers at most
+constexpr int kLeastSamples = 64;          // paths per receiver
+constexpr double kComparedPaths = 2e6;     // of all receivers, where sets of lights are only compared …
+constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
+constexpr double kNinety = 1.645;          // standard deviations to either side
 
 Vec3f& intensity_of(renderer::PointLight& light) { return light.intensity; }
 Vec3f& intensity_of(renderer::SpotLight& light) { return light.intensity; }
@@ -36,11 +38,10 @@ Vec3f intensity_of(renderer::Light light) {
 }
 
 std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::Lights& lights,
-                                  const std::vector<renderer::SurfaceSample>& at, const SolveOptions& options,
-                                  const renderer::Control& control) {
+                                  const std::vector<renderer::SurfaceSample>& at, int paths,
+                                  const SolveOptions& options, const renderer::Control& control) {
   renderer::Lights unity;
   for (const renderer::Light& light : lights) unity.push_back(with_intensity(light, {1, 1, 1}));
-  const int paths = std::max(kLeastSamples, verification_samples(options, at.size()));
   const renderer::TraceOptions trace{paths, problem.bake.bounces, fresh_seed(options.seed, 6), true};
   std::vector<Column> columns;
   const auto by_light = trace_illumination_by_light(problem.tracer, at, unity, trace, control);
@@ -118,9 +119,10 @@ ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& o
 std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
                                        const SolveOptions& options, const renderer::Control& control) {
   const auto [samples, observations] = observe_many(problem, options, control);
+  const int paths = std::clamp(int(kComparedPaths / double(samples.size())), kLeastComparedSamples, kLeastSamples);
   std::vector<PlacedFit> fits;
   for (const renderer::Lights& lights : sets) {
-    const std::vector<Column> columns = unity_columns(problem, lights, samples, options, control);
+    const std::vector<Column> columns = unity_columns(problem, lights, samples, paths, options, control);
     const IntensityFit fit = fit_intensities(observations, columns);
     fits.push_back({fit.intensity, error_of(observations, columns, fit.intensity)});
   }
@@ -132,7 +134,8 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   SolveResult result;
   check_lights_in_place(problem);
   const auto [samples, observations] = observe_many(problem, options, control);
-  const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, options, control);
+  const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
+  const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);
   result.cache_seconds = clock.finish("traced_lights", {{"lights", double(columns.size())}});
   const IntensityFit fit = fit_intensities(observations, columns);
   result.relative_l2_cached = error_of(observations, columns, fit.intensity);
@@ -150,7 +153,8 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.target_noise = target_noise(problem.target);
   result.important_vertices = int(observations.wanted.rows());
   result.termination = "all lights stay where they are";
-  judge(problem, options, trace_afresh(problem, found_lights(result), options, control), result);
+  const int fresh_samples = verification_samples(options, problem.target.receivers.size());
+  judge(problem, options, trace_afresh(problem, found_lights(result), fresh_samples, options, control), result);
   clock.finish("verification",
                {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
   result.stages = clock.stages();

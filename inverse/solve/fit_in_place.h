@@ -9,7 +9,8 @@ struct PlacedFit {
   std::vector<Eigen::Array3d> intensity;
   double error = 0;  // (3.6) over these receivers
 };
-// Of each set, by what each of its lights brings by path tracing, whatever its intensity is now.
+// Of each set, by what each of its lights brings by a little path tracing, whatever its intensity is now: to compare
+// sets by.
 std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
                                        const SolveOptions& options, const renderer::Control& control);
 

@@ -3,25 +3,20 @@
 #include <algorithm>
 
 #include "inverse/solve/choose_light_count.h"
-#include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
-#include "inverse/solve/observe_target.h"
 #include "inverse/solve/polish_lights.h"
-#include "inverse/solve/refine_over_many.h"
-#include "inverse/solve/traced_light.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kFixedSamplesOfMany = 32;  // per receiver of the last refinement …
-constexpr std::size_t kMany = 50000;     // … of so many at most
-constexpr double kFarFromTarget = 0.1;   // error of lights that do not stand where the target's stood
-constexpr double kWorthALight = 1.05;    // times the error of more lights, or less: they are too many
-constexpr double kNegligible = 1e-3;     // contribution to the target's norm
-constexpr double kHardlySeen = 1e-2;     // the same, of a light that may stand anywhere
+constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood
+constexpr double kNothingElse = 1.4;    // times the noise of the target, or less
+constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
+constexpr double kNegligible = 1e-3;    // contribution to the target's norm
+constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
@@ -61,26 +56,6 @@ LightEstimates without_negligible(const LightResponse& response, const Observati
   if (kept.empty()) return lights;
   beside_surfaces = kept_beside;
   return kept;
-}
-
-// The lights refined over many receivers. Those beside surfaces, whose neighbours may not be among the many, stay.
-LightEstimates refined_over_many(const JointSearch& search, const LightEstimates& lights,
-                                 const LightEstimates& beside_surfaces, StageClock& clock) {
-  const SolveProblem& problem = search.problem;
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const auto samples = samples_at(problem.target, draw.chosen);
-  const DirectlyLit many(problem.tracer, search.response, samples);
-  Observations observations = observe_target(
-      problem.target, draw, fixed_illumination(problem, samples, kFixedSamplesOfMany, search.options, search.control));
-  if (!beside_surfaces.empty()) observations = with_capped_weights(observations);
-  BakeSettings settings = search.exact.settings();
-  settings.seed = fresh_seed(search.options.seed, 4);
-  PolishedLights refined = refine_over_many({problem.tracer, many.response(), observations, settings, search.control},
-                                            lights, beside_surfaces);
-  search.exact.correct(search.response, refined.lights);
-  clock.finish("refinement_over_many",
-               {{"receivers", double(samples.size())}, {"rounds", refined.rounds}, {"relative_l2", refined.error}});
-  return joined(beside_surfaces, refined.lights);
 }
 
 // Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
@@ -184,13 +159,12 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
   const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
   const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
+  const bool tied = ties_lights_together(search.problem);
   const auto at_last = [&] {
     if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
     if (far) return best_over_many(search, polished.lights, count.sets, clock);
-    if (ties_lights_together(search.problem)) {
-      return best_over_many(search, joined(beside_surfaces, polished.lights), {}, clock);
-    }
-    return refined_over_many(search, polished.lights, beside_surfaces, clock);
+    const LightEstimates all = joined(beside_surfaces, polished.lights);
+    return tied ? best_over_many(search, all, {}, clock) : all;
   };
   const LightEstimates all = at_last();
   const bool may_share_places = !(search.problem.places.light_distance > 0);
@@ -204,7 +178,9 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
                                      : "no further light explains more",
           cut.nodes,
           error_curve,
-          !far && !count.out_of_time && !ties_lights_together(search.problem),
+          explained && polished.error <= kNothingElse * last.noise,
+          !count.out_of_time && (far || tied),
+          !count.out_of_time && !far && !tied,
           held};
 }
 

@@ -1,6 +1,7 @@
 #include "inverse/solve/settle_by_trace.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/instrumental_fit.h"
@@ -11,7 +12,8 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kRounds = 3;
+constexpr int kRounds = 3, kDrafts = 5;
+constexpr int kDraft = 8;             // a part of all paths, while the lights still go farther
 constexpr double kLeastPaths = 2e6;   // of all receivers together …
 constexpr int kEnoughSamples = 256;   // … or so many per receiver
 constexpr std::size_t kMany = 30000;  // receivers at most
@@ -173,14 +175,41 @@ LightEstimates joined(const Settling& with, const LightEstimates& lights, const 
   return all;
 }
 
-}  // namespace
-
-LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-                           const LightEstimates& lights, StageClock& clock) {
-  LightsByTrace by_trace{lights, trace_afresh(problem, point_lights(lights), options, control)};
-  clock.finish("verification", {{"relative_standard_error", relative_standard_error(by_trace.traced.all)}});
-  return by_trace;
+// A light whose indirect light stayed behind while it moved is led past its place in one round and back in the next.
+// The ratio of both moves tells where it would come to rest (Aitken's Δ²).
+// earlier: before the round before.
+void come_to_rest(const AllowedPlaces& places, const LightEstimates& earlier, const LightEstimates& before,
+                  LightEstimates& lights) {
+  if (earlier.size() != lights.size() || before.size() != lights.size()) return;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    const Eigen::Vector3d last_move = before[j].position - earlier[j].position;
+    const Eigen::Vector3d move = lights[j].position - before[j].position;
+    const double ratio = move.dot(last_move) / std::max(last_move.squaredNorm(), 1e-300);
+    if (!(ratio < 0 && ratio > -1)) continue;
+    const Eigen::Vector3d rest = before[j].position + move / (1 - ratio);
+    lights[j].position = places.nearest(rest).value_or(lights[j].position);
+  }
 }
+
+// Towards where they will settle, by traces of fewer paths, until they hardly move. None goes.
+void approach(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+              const Settling& with, LightEstimates& lights) {
+  const int samples = std::max(1, verification_samples(options, problem.target.receivers.size()) / kDraft);
+  LightEstimates earlier, before;
+  for (int draft = 0; draft < kDrafts; ++draft) {
+    const FreshTrace traced = trace_afresh(problem, point_lights(lights), samples, options, control);
+    FreeLights free = free_lights(with, lights, traced);
+    const Bench bench{with.some.response(), wanted_of(with, free, traced)};
+    if (any_hidden(bench, free)) return;
+    bench.descend(free);
+    earlier = std::exchange(before, lights);
+    lights = joined(with, lights, free);
+    come_to_rest(with.some.response().places(), earlier, before, lights);
+    if (at_rest(bench, free, with.near)) return;
+  }
+}
+
+}  // namespace
 
 LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control, const LightResponse& search, const Optimum& found,
@@ -195,12 +224,14 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
                       kNear * double(search.grid().region.diagonal())};
   LightEstimates lights;
   for (const LightEstimate& light : found.lights) lights.push_back({light.position, light.intensity});
-  double seconds = 0;
+  const bool worth_it =
+      is_worth_it(options, problem.target.receivers.size(), lights.size()) && !any_share_a_place(lights, with.near);
+  if (worth_it && !found.explained) approach(problem, options, control, with, lights);
+  double seconds = clock.finish("approach", {});
   for (int round = 1;; ++round) {
     LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
     by_trace.settling_seconds = seconds;
-    if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) return by_trace;
-    if (any_share_a_place(lights, with.near)) return by_trace;
+    if (!worth_it || any_share_a_place(lights, with.near)) return by_trace;
     FreeLights free = free_lights(with, lights, by_trace.traced);
     const Bench bench{with.some.response(), wanted_of(with, free, by_trace.traced)};
     if (any_hidden(bench, free)) return by_trace;

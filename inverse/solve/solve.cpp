@@ -160,6 +160,13 @@ void require_all_lights(const SolveProblem& problem, const SolveOptions& options
   if (std::all_of(found.begin(), found.end(), is_dark)) nothing_lit(problem);
 }
 
+LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                     const LightResponse& response, const Optimum& found, StageClock& clock) {
+  if (found.settles) return settle_by_trace(problem, options, control, response, found, clock);
+  if (found.refits) return refit_by_trace(problem, options, control, found.lights, clock);
+  return trace_lights(problem, options, control, found.lights, clock);
+}
+
 }  // namespace
 
 SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
@@ -229,8 +236,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   optimum.lights =
       filled_up(response, judged, std::move(optimum.lights), std::size_t(std::max(1, options.exact_lights)));
   require_all_lights(problem, options, optimum.lights);
-  LightsByTrace by_trace = optimum.settles ? settle_by_trace(problem, options, control, response, optimum, clock)
-                                           : trace_lights(problem, options, control, optimum.lights, clock);
+  LightsByTrace by_trace = traced(problem, options, control, response, optimum, clock);
   result.optimal_seconds += by_trace.settling_seconds;
   report_lights(response, reported, by_trace, result);
   result.initial_relative_l2 = relative_error(reported, illumination_of(response, optimum.start));

@@ -34,13 +34,12 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
   return std::clamp(int(kVerificationPaths / double(receivers)), kLeastVerificationSamples, kMostVerificationSamples);
 }
 
-FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
-                        const renderer::Control& control) {
+FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples,
+                        const SolveOptions& options, const renderer::Control& control) {
   renderer::Lights all = lights;
   all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
   const Receivers& receivers = problem.target.receivers;
-  const renderer::TraceOptions trace{verification_samples(options, receivers.size()), problem.bake.bounces,
-                                     fresh_seed(options.seed, 2), true};
+  const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, 2), true};
   auto traced = trace_illumination_by_light(problem.tracer, receivers.samples, all, trace, control);
   traced.of_light.resize(lights.size());
   return {std::move(traced.total), std::move(traced.of_light)};

@@ -22,8 +22,8 @@ struct FreshTrace {
   renderer::Illumination all;                // cd/m²; with what shines anyway
   std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
 };
-FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
-                        const renderer::Control& control);
+FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples,
+                        const SolveOptions& options, const renderer::Control& control);
 
 // Fills in how far the lights of the result are from the target.
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result);

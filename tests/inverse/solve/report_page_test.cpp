@@ -111,7 +111,7 @@ TEST(ReportPage, StagesHoldTheErrorCurveAndFiguresWithoutSeconds) {
   EXPECT_EQ(stages["error_curve"][0]["light_count"], 1);
   EXPECT_EQ(stages["error_curve"][0]["relative_l2"], 0.25);
   EXPECT_EQ(stages["stages"][0]["figures"]["relative_l2"], 0.125);
-  EXPECT_EQ(stages["tree"]["cut"], json({0}));
+  EXPECT_EQ(stages["tree"]["cut"], json::array({0}));
   EXPECT_EQ(text.find("seconds"), std::string::npos);
 }
 

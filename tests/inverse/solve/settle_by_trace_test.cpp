@@ -19,14 +19,14 @@ constexpr double kPrecise = 0.008;  // metres: what the noise of target and trac
 class SettleByTrace : public ::testing::Test {
  protected:
   LightsByTrace settle(const Target& target, const LightEstimates& lights, SolveOptions options = {},
-                       std::size_t held = 0) const {
+                       std::size_t held = 0, bool explained = true) const {
     if (options.verification_samples == 0) options.verification_samples = 400;
     const SolveProblem problem{corner_.tracer(), target, {}, {}, bake_settings(-1), {}};
     TransportCache nothing;
     nothing.grid = make_light_grid(corner_.tracer(), {});
     const LightResponse search(corner_.tracer(), {}, nothing);
     StageClock clock;
-    return settle_by_trace(problem, options, {}, search, {lights, {}, "", {}, {}, true, held}, clock);
+    return settle_by_trace(problem, options, {}, search, {lights, {}, "", {}, {}, explained, false, true, held}, clock);
   }
 
   // relative_l2 of what these lights bring, traced by itself.
@@ -75,6 +75,14 @@ TEST_F(SettleByTrace, TheTraceIsThatOfTheSettledLights) {
 TEST_F(SettleByTrace, LightsFarFromTheirPlaceAreTracedAgain) {
   const LightEstimates known = known_lights(2);
   const LightsByTrace settled = settle(corner_.target(known, -1), displaced(known, 0.1));
+  ASSERT_TRUE(settled.intervals);
+  EXPECT_LT(farthest_from(known, positions_of(settled.lights)), kPrecise);
+}
+
+// … with fewer paths first, where they are known to be far.
+TEST_F(SettleByTrace, LightsFarFromTheirPlaceApproachIt) {
+  const LightEstimates known = known_lights(3);
+  const LightsByTrace settled = settle(corner_.target(known, -1), displaced(known, 0.1), {}, 0, false);
   ASSERT_TRUE(settled.intervals);
   EXPECT_LT(farthest_from(known, positions_of(settled.lights)), kPrecise);
 }

@@ -65,7 +65,7 @@ TEST(EmissiveTriangles, SamplesCarryTheirOwnDensityAndRadiance) {
   const RayTracer tracer(scene);
   const EmissiveTriangles emitters(scene);
   const Vec3f from{0.5F, 0.5F, 0.4F};
-  Mean solid_angle, flux;
+  Mean solid_angle;
   for (std::uint32_t k = 0; k < 1U << 15; ++k) {
     Sampler sampler(2, 0, k);
     const float pick = sampler.next_1d();

@@ -1,0 +1,67 @@
+#include "inverse/solve/lights_by_trace.h"
+
+#include "inverse/solve/observe_target.h"
+#include "inverse/transport/eigen_vectors.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr std::size_t kMany = 50000;  // receivers at most
+constexpr double kDarkest = 1e-20;    // candela: a channel that shines
+
+std::vector<Vec3f> chosen_of(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen) {
+  std::vector<Vec3f> some;
+  for (const std::size_t i : chosen) some.push_back(values[i]);
+  return some;
+}
+
+// Of each channel: by what its light grows. One that does not shine stays dark.
+Eigen::Array3d growth(const Eigen::Array3d& before, const Eigen::Array3d& after) {
+  return (before > kDarkest).select(after / before.max(kDarkest), 0);
+}
+
+// The trace becomes that of lights that grew so.
+void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
+  for (std::size_t j = 0; j < grown.size(); ++j) {
+    const Vec3f change = to_vec3f((grown[j] - 1).matrix());
+    for (std::size_t i = 0; i < traced.all.value.size(); ++i) traced.all.value[i] += change * traced.of_light[j][i];
+  }
+}
+
+}  // namespace
+
+LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                           const LightEstimates& lights, StageClock& clock) {
+  const int samples = verification_samples(options, problem.target.receivers.size());
+  LightsByTrace by_trace{lights, trace_afresh(problem, point_lights(lights), samples, options, control)};
+  clock.finish("verification", {{"relative_standard_error", relative_standard_error(by_trace.traced.all)}});
+  return by_trace;
+}
+
+LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                             const LightEstimates& lights, StageClock& clock) {
+  LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
+  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  Observations observations = observe_target(problem.target, draw, chosen_of(by_trace.traced.all.value, draw.chosen));
+  std::vector<Column> unity;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    const Column brought = column_of(chosen_of(by_trace.traced.of_light[j], draw.chosen));
+    observations.wanted += brought;
+    unity.push_back(brought * growth(lights[j].intensity, Eigen::Array3d::Ones()).matrix().asDiagonal());
+  }
+  observations = weighted_by_objective(observations, options.objective);
+  observations.rules = problem.intensities;
+  const IntensityFit fit = fit_intensities(observations, unity);
+  std::vector<Eigen::Array3d> grown;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    grown.push_back(growth(lights[j].intensity, fit.intensity[j]));
+    by_trace.lights[j] = {lights[j].position, lights[j].intensity * grown[j]};
+  }
+  follow(grown, by_trace.traced);
+  by_trace.settling_seconds = clock.finish(
+      "intensities", {{"relative_l2", relative_error(observations, total_illumination(unity, fit.intensity,
+                                                                                      observations.wanted.rows()))}});
+  return by_trace;
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,66 @@
+#include "inverse/solve/lights_by_trace.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/inverse/solve/painted_corner.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using tests::bake_settings;
+using tests::known_lights;
+using tests::PaintedCorner;
+
+class RefitByTrace : public ::testing::Test {
+ protected:
+  LightsByTrace refit(const Target& target, const LightEstimates& lights, const IntensityRules& rules = {}) const {
+    SolveProblem problem{corner_.tracer(), target, {}, {}, bake_settings(-1), {}};
+    problem.intensities = rules;
+    SolveOptions options;
+    options.verification_samples = 256;
+    StageClock clock;
+    return refit_by_trace(problem, options, {}, lights, clock);
+  }
+
+  PaintedCorner corner_;
+};
+
+// Two lights at once too bright and too dark; their places are right.
+TEST_F(RefitByTrace, GivesTheIntensitiesThatMadeTheTarget) {
+  const LightEstimates known = known_lights(2);
+  const Target target = corner_.target(known, -1);
+  LightEstimates start = known;
+  start[0].intensity *= Eigen::Array3d(3, 0.2, 1);
+  start[1].intensity *= Eigen::Array3d(0.5, 1, 9);
+  const LightsByTrace refitted = refit(target, start);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_EQ(refitted.lights[j].position, known[j].position);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(refitted.lights[j].intensity[c] / known[j].intensity[c], 1, 0.01);
+  }
+  // The trace is theirs: what is left is noise.
+  EXPECT_LT(relative_l2(refitted.traced.all.value, target.illumination, target.weight), 0.03);
+}
+
+TEST_F(RefitByTrace, KeepsToTheRules) {
+  const LightEstimates known = known_lights(2);
+  IntensityRules rules;
+  rules.max_intensity = 4;
+  LightEstimates start = known;
+  for (LightEstimate& light : start) light.intensity = 1;
+  for (const LightEstimate& light : refit(corner_.target(known, 0), start, rules).lights) {
+    EXPECT_LE(light.intensity.maxCoeff(), 4 * (1 + 1e-12));
+    EXPECT_GT(light.intensity.maxCoeff(), 3.9);
+  }
+}
+
+// Nothing is known of a channel that did not shine.
+TEST_F(RefitByTrace, DarkChannelsStayDark) {
+  LightEstimates start = known_lights(1);
+  start[0].intensity[1] = 0;
+  const LightsByTrace refitted = refit(corner_.target(known_lights(1), 0), start);
+  EXPECT_EQ(refitted.lights[0].intensity[1], 0);
+  for (const Vec3f& light : refitted.traced.all.value) EXPECT_EQ(light.y, 0);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse
