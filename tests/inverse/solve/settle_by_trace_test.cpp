@@ -36,7 +36,7 @@ class SettleByTrace : public ::testing::Test {
     return relative_l2(lit.value, target.illumination, target.weight);
   }
 
-  PaintedCorner corner_;
+  PaintedCorner corner_{0.3F};
 };
 
 LightEstimates displaced(LightEstimates lights, double metres) {
