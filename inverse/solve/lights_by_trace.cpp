@@ -9,12 +9,6 @@ namespace {
 constexpr std::size_t kMany = 50000;  // receivers at most
 constexpr double kDarkest = 1e-20;    // candela: a channel that shines
 
-std::vector<Vec3f> chosen_of(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen) {
-  std::vector<Vec3f> some;
-  for (const std::size_t i : chosen) some.push_back(values[i]);
-  return some;
-}
-
 // Of each channel: by what its light grows. One that does not shine stays dark.
 Eigen::Array3d growth(const Eigen::Array3d& before, const Eigen::Array3d& after) {
   return (before > kDarkest).select(after / before.max(kDarkest), 0);
@@ -42,10 +36,10 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
                              const LightEstimates& lights, StageClock& clock) {
   LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  Observations observations = observe_target(problem.target, draw, chosen_of(by_trace.traced.all.value, draw.chosen));
+  Observations observations = observe_target(problem.target, draw, values_at(by_trace.traced.all.value, draw.chosen));
   std::vector<Column> unity;
   for (std::size_t j = 0; j < lights.size(); ++j) {
-    const Column brought = column_of(chosen_of(by_trace.traced.of_light[j], draw.chosen));
+    const Column brought = column_of(values_at(by_trace.traced.of_light[j], draw.chosen));
     observations.wanted += brought;
     unity.push_back(brought * growth(lights[j].intensity, Eigen::Array3d::Ones()).matrix().asDiagonal());
   }

@@ -22,6 +22,12 @@ std::vector<renderer::SurfaceSample> samples_at(const Target& target, const std:
   return samples;
 }
 
+std::vector<Vec3f> values_at(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen) {
+  std::vector<Vec3f> some;
+  for (const std::size_t i : chosen) some.push_back(values[i]);
+  return some;
+}
+
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed) {
   const auto count = Eigen::Index(draw.chosen.size());
   Observations o;

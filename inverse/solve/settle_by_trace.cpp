@@ -22,12 +22,6 @@ constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone i
 constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
 constexpr double kGain = 0.01;        // of the squared error: what a light must explain
 
-std::vector<Vec3f> chosen_of(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen) {
-  std::vector<Vec3f> some;
-  for (const std::size_t i : chosen) some.push_back(values[i]);
-  return some;
-}
-
 // Lights that may move, as they were traced and as they are now.
 struct FreeLights {
   LightEstimates traced, now;
@@ -139,7 +133,7 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
   free.now = free.traced;
   const std::vector<Column> direct = direct_columns(with.some, free.now);
   for (std::size_t j = 0; j < free.now.size(); ++j) {
-    free.brought.push_back(column_of(chosen_of(traced.of_light[with.held + j], with.draw.chosen)));
+    free.brought.push_back(column_of(values_at(traced.of_light[with.held + j], with.draw.chosen)));
     free.indirect.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
     free.number.push_back(with.held + j);
   }
@@ -148,7 +142,7 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
 
 // What the receivers drawn want of the free lights.
 Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& traced) {
-  Observations observations = observe_target(with.target, with.draw, chosen_of(traced.all.value, with.draw.chosen));
+  Observations observations = observe_target(with.target, with.draw, values_at(traced.all.value, with.draw.chosen));
   for (const Column& brought : free.brought) observations.wanted += brought;
   return with.held > 0 ? with_capped_weights(observations) : observations;
 }
@@ -226,7 +220,8 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   for (const LightEstimate& light : found.lights) lights.push_back({light.position, light.intensity});
   const bool worth_it =
       is_worth_it(options, problem.target.receivers.size(), lights.size()) && !any_share_a_place(lights, with.near);
-  if (worth_it && !found.explained) approach(problem, options, control, with, lights);
+  const auto out_of_time = [&] { return options.time_limit > 0 && clock.total() > options.time_limit; };
+  if (worth_it && !found.explained && !out_of_time()) approach(problem, options, control, with, lights);
   double seconds = clock.finish("approach", {});
   for (int round = 1;; ++round) {
     LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
@@ -246,7 +241,7 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
     }
     seconds += clock.finish("settling", {{"lights", double(lights.size())}, {"at_rest", rests ? 1 : 0}});
     by_trace.settling_seconds = seconds;
-    if (rests || round == kRounds) return by_trace;
+    if (rests || round == kRounds || out_of_time()) return by_trace;
   }
 }
 
