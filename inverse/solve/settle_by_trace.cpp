@@ -6,7 +6,6 @@
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/observe_target.h"
-#include "inverse/solve/polish_lights.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
@@ -59,22 +58,25 @@ bool is_doubtful(const LightEstimate& light, const LightInterval& interval) {
   return (light.intensity < kDoubtful * interval.intensity).all();
 }
 
-// Without the lights that the others do as well without; one always stays. Returns how sure those are that stay.
-LightIntervals remove_needless(const Bench& bench, double error, FreeLights& free) {
-  LightIntervals intervals = bench.intervals(free);
-  for (std::size_t j = 0; j < free.now.size() && free.now.size() > 1;) {
+// Takes away the first light that the others do as well without; false: there is none.
+bool remove_needless_one(const Bench& bench, const LightIntervals& intervals, double& error, FreeLights& free) {
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    if (!is_doubtful(free.now[j], intervals.lights[j])) continue;
     FreeLights others = free;
     others.remove(j);
-    const double without = is_doubtful(free.now[j], intervals.lights[j]) ? bench.descend(others) : 2 * error;
-    if (without * without > (1 + kGain) * error * error) {
-      ++j;
-      continue;
-    }
+    const double without = bench.descend(others);
+    if (without * without > (1 + kGain) * error * error) continue;
     free = std::move(others);
     error = without;
-    intervals = bench.intervals(free);
-    j = 0;
+    return true;
   }
+  return false;
+}
+
+// One always stays. Returns how sure those are that stay.
+LightIntervals remove_needless(const Bench& bench, double error, FreeLights& free) {
+  LightIntervals intervals = bench.intervals(free);
+  while (free.now.size() > 1 && remove_needless_one(bench, intervals, error, free)) intervals = bench.intervals(free);
   return intervals;
 }
 
@@ -208,6 +210,11 @@ void approach(const SolveProblem& problem, const SolveOptions& options, const re
 LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control, const LightResponse& search, const Optimum& found,
                               StageClock& clock) {
+  LightEstimates lights;
+  for (const LightEstimate& light : found.lights) lights.push_back({light.position, light.intensity});
+  if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
+    return trace_lights(problem, options, control, lights, clock);
+  }
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
   const Settling with{problem.target,
                       draw,
@@ -216,17 +223,14 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
                       found.held,
                       options.exact_lights == 0,
                       kNear * double(search.grid().region.diagonal())};
-  LightEstimates lights;
-  for (const LightEstimate& light : found.lights) lights.push_back({light.position, light.intensity});
-  const bool worth_it =
-      is_worth_it(options, problem.target.receivers.size(), lights.size()) && !any_share_a_place(lights, with.near);
   const auto out_of_time = [&] { return options.time_limit > 0 && clock.total() > options.time_limit; };
-  if (worth_it && !found.explained && !out_of_time()) approach(problem, options, control, with, lights);
+  if (!found.explained && !any_share_a_place(lights, with.near) && !out_of_time())
+    approach(problem, options, control, with, lights);
   double seconds = clock.finish("approach", {});
   for (int round = 1;; ++round) {
     LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
     by_trace.settling_seconds = seconds;
-    if (!worth_it || any_share_a_place(lights, with.near)) return by_trace;
+    if (any_share_a_place(lights, with.near)) return by_trace;
     FreeLights free = free_lights(with, lights, by_trace.traced);
     const Bench bench{with.some.response(), wanted_of(with, free, by_trace.traced)};
     if (any_hidden(bench, free)) return by_trace;
