@@ -4,9 +4,8 @@
 #include <memory>
 #include <numeric>
 
-#include <nanoflann.hpp>
-
 #include "inverse/transport/eigen_vectors.h"
+#include "inverse/transport/nearest_gather_point.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
 
@@ -18,50 +17,14 @@ using renderer::SurfacePoint;
 using renderer::SurfaceSample;
 using renderer::Vec3f;
 
-// The nearest gather point in position and orientation.
-class NearestGatherPoint {
- public:
-  NearestGatherPoint(std::vector<SurfaceSample> points, float spacing)
-      : scale_(kOrientationWeight * spacing), cloud_{std::move(points), scale_}, tree_(6, cloud_, {8}) {
-    tree_.buildIndex();
-  }
-
-  std::uint32_t find(const SurfaceSample& at) const {
-    const float query[6] = {at.position.x,        at.position.y,        at.position.z,
-                            scale_ * at.normal.x, scale_ * at.normal.y, scale_ * at.normal.z};
-    std::uint32_t index = 0;
-    float squared_distance = 0;
-    tree_.knnSearch(query, 1, &index, &squared_distance);
-    return index;
-  }
-
- private:
-  struct Cloud {
-    std::vector<SurfaceSample> points;
-    float scale;
-    std::size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(std::uint32_t i, std::size_t d) const {
-      return d < 3 ? points[i].position[int(d)] : scale * points[i].normal[int(d) - 3];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 6, std::uint32_t>;
-
-  static constexpr float kOrientationWeight = 3.0F;  // turning a normal by 1 counts as this many spacings
-  float scale_;
-  Cloud cloud_;
-  Tree tree_;
-};
-
 namespace {
 
 constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
 constexpr int kPathsPerGatherPoint = 32;
 constexpr float kNearField = 8.0F;  // cell radii
 constexpr int kRaysPerGatherPoint = 64;
+constexpr int kHiddenPerGatherPoint = 8;      // samples that see no gather point, of which one becomes another …
+constexpr std::size_t kMostHiddenPoints = 2;  // … up to this part of those that there are
 
 struct GatherHit {
   SurfaceSample at;
@@ -113,6 +76,21 @@ std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std:
   return chosen;
 }
 
+// With some of those that see none of them.
+std::vector<SurfaceSample> with_hidden(std::vector<SurfaceSample> points, const std::vector<SurfaceSample>& all,
+                                       const NearestGatherPoint& nearest) {
+  std::vector<char> is_hidden(all.size());
+  renderer::parallel_for(all.size(), [&](std::size_t i) { is_hidden[i] = nearest.find_seen(all[i]) ? 0 : 1; });
+  std::vector<SurfaceSample> hidden;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_hidden[i] != 0) hidden.push_back(all[i]);
+  }
+  const std::size_t count = std::min(hidden.size() / kHiddenPerGatherPoint, points.size() / kMostHiddenPoints);
+  const std::vector<SurfaceSample> more = every_nth(hidden, count);
+  points.insert(points.end(), more.begin(), more.end());
+  return points;
+}
+
 // Mean distance between neighbours if the points lay evenly on a box of the scene's size.
 float typical_spacing(const RayTracer& tracer, std::size_t points) {
   const Vec3f e = tracer.bounds().extent();
@@ -144,6 +122,35 @@ std::vector<std::size_t> all_of(std::size_t count) {
   return all;
 }
 
+std::vector<GatherHit> gather_hits(const RayTracer& tracer, const SurfaceSample& from, std::size_t index, int rays,
+                                   std::uint64_t seed) {
+  std::vector<GatherHit> hits;
+  for (int k = 0; k < rays; ++k) {
+    Sampler sampler(seed, std::uint32_t(index), std::uint32_t(k));
+    if (const auto hit = gather(tracer, from, sampler)) hits.push_back(*hit);
+  }
+  return hits;
+}
+
+// Each hit is as bright as the gather point that it sees; those that see none are as bright as the others, or where
+// there are no others as the nearest gather point.
+std::vector<SparseTransport::Entry> row_of(const std::vector<GatherHit>& hits, int rays,
+                                           const NearestGatherPoint& nearest) {
+  std::vector<SparseTransport::Entry> row;
+  Vec3f hidden_albedo{};
+  for (const GatherHit& hit : hits) {
+    if (const auto point = nearest.find_seen(hit.at)) {
+      row.push_back({*point, hit.albedo / float(rays)});
+    } else {
+      hidden_albedo += hit.albedo / float(rays);
+    }
+  }
+  for (auto& entry : row) entry.weight += hidden_albedo / float(row.size());
+  if (!row.empty()) return row;
+  for (const GatherHit& hit : hits) row.push_back({nearest.find(hit.at), hit.albedo / float(rays)});
+  return row;
+}
+
 SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSample> from,
                            std::span<const std::size_t> chosen, int rays, std::uint64_t seed,
                            const NearestGatherPoint& nearest, const renderer::Control& control) {
@@ -151,12 +158,7 @@ SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSampl
   constexpr std::size_t kBlock = 32;
   renderer::parallel_for((chosen.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(chosen.size(), (block + 1) * kBlock); ++i) {
-      for (int k = 0; k < rays; ++k) {
-        Sampler sampler(seed, std::uint32_t(chosen[i]), std::uint32_t(k));
-        if (const auto hit = gather(tracer, from[chosen[i]], sampler)) {
-          rows[i].push_back({nearest.find(hit->at), hit->albedo / float(rays)});
-        }
-      }
+      rows[i] = row_of(gather_hits(tracer, from[chosen[i]], chosen[i], rays, seed), rays, nearest);
     }
   });
   return SparseTransport::from_rows(std::move(rows));
@@ -253,8 +255,9 @@ GatherOperator make_gather_points(const RayTracer& tracer, std::span<const Surfa
   const auto all = trace_gather_paths(tracer, receivers, kPathsPerGatherPoint * wanted, options.seed + 1);
   gather.points = every_nth(all, wanted);
   if (gather.points.empty()) return gather;
-  gather.nearest =
-      std::make_shared<const NearestGatherPoint>(gather.points, typical_spacing(tracer, gather.points.size()));
+  const float spacing = typical_spacing(tracer, gather.points.size());
+  gather.points = with_hidden(gather.points, all, {tracer, gather.points, spacing});
+  gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
   fill_cells(gather, all, *gather.nearest);
   gather.interreflection =
       make_interreflection(trace_rows(tracer, gather.points, all_of(gather.points.size()), kRaysPerGatherPoint,

@@ -8,11 +8,11 @@
 //
 //   indirect = K_rg (D + K_gg D + K_gg² D + …)
 //
-// Rays from receivers and gather points go to the nearest gather point of like orientation, with the albedo of the very
-// spot that they hit. A light close to a gather point is averaged over the point's cell: over samples of the surface
-// for which it stands. Surfaces count as Lambertian with their hemispherical albedo. The bias of both shrinks with
-// `samples` (more gather points), or is the material's; a bake measures it against the path tracer.
-// Source: Hašan, Pellacini, Bala, Direct-to-Indirect Transfer for Cinematic Relighting, 2006.
+// Rays from receivers and gather points go to the nearest gather point of like orientation that is seen from the spot
+// that they hit, with the albedo of that very spot. A light close to a gather point is averaged over the point's cell:
+// over samples of the surface for which it stands. Surfaces count as Lambertian with their hemispherical albedo. The
+// bias of both shrinks with `samples` (more gather points), or is the material's; a bake measures it against the path
+// tracer. Source: Hašan, Pellacini, Bala, Direct-to-Indirect Transfer for Cinematic Relighting, 2006.
 
 #include <memory>
 #include <vector>

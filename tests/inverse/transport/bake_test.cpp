@@ -96,6 +96,40 @@ TEST(GatherOperator, WithoutBouncesBringsNothing) {
   EXPECT_EQ(indirect[0], std::vector<Vec3f>(receivers.size()));
 }
 
+// A room with a crate sunk into its floor, no wall of which is lit from within.
+Scene room_with_crate() {
+  Scene scene;
+  const renderer::Material grey = test::lambert({0.7F, 0.7F, 0.7F});
+  test::add_mesh(scene, test::room({4, 3, 4}), grey, "room");
+  renderer::Mesh crate = test::room({0.6F, 0.5F, 0.6F});
+  for (Vec3f& position : crate.positions) position += Vec3f{1.7F, -0.1F, 1.7F};
+  test::add_mesh(scene, std::move(crate), grey, "crate");
+  return scene;
+}
+
+TEST(GatherOperator, NoLightLeaksIntoClosedCrates) {
+  const Scene scene = room_with_crate();
+  const RayTracer tracer(scene);
+  std::vector<SurfaceSample> receivers;  // on the floor, every 10 cm
+  for (int x = 1; x < 40; ++x) {
+    for (int z = 1; z < 40; ++z) receivers.push_back({{0.1F * float(x), 0, 0.1F * float(z)}, {0, 1, 0}});
+  }
+  const GatherOperator gather = make_gather_operator(tracer, receivers, {.samples = 64, .points_per_sample = 8});
+  const auto indirect = indirect_illumination(tracer, gather, std::vector<Vec3f>{{2, 2, 2}});
+  double lit = 0, inside = 0;
+  std::size_t inside_count = 0;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const Vec3f p = receivers[i].position;
+    const bool in_crate = std::abs(p.x - 2) < 0.25F && std::abs(p.z - 2) < 0.25F;
+    (in_crate ? inside : lit) += double(indirect[i].channel[0][0]);
+    inside_count += in_crate ? 1 : 0;
+  }
+  ASSERT_EQ(inside_count, 25U);
+  lit /= double(receivers.size() - inside_count);
+  EXPECT_GT(lit, 0);
+  EXPECT_LT(inside / double(inside_count), 1e-3 * lit);
+}
+
 TEST(GatherOperator, AdjointGivesTheSameLight) {
   const Scene scene = test::corner_with_ball();
   const RayTracer tracer(scene);

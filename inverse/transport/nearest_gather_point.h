@@ -1,0 +1,30 @@
+#pragma once
+// Which gather point stands for a spot of the surface: the nearest in position and orientation that is seen from there,
+// a little above the surface, so that no light leaks below what stands or lies on a lit surface, or into solids.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "renderer/trace/trace_illumination.h"
+
+namespace chiaro::inverse {
+
+class NearestGatherPoint {
+ public:
+  // spacing: metres between neighbours, about. Keeps a reference to the tracer.
+  NearestGatherPoint(const renderer::RayTracer& tracer, std::vector<renderer::SurfaceSample> points, float spacing);
+  ~NearestGatherPoint();
+
+  // Its index; nothing where none of the nearest is seen.
+  std::optional<std::uint32_t> find_seen(const renderer::SurfaceSample& at) const;
+  // Where none of them is seen the nearest.
+  std::uint32_t find(const renderer::SurfaceSample& at) const;
+
+ private:
+  struct Tree;
+  const renderer::RayTracer& tracer_;
+  std::unique_ptr<const Tree> tree_;
+};
+
+}  // namespace chiaro::inverse
