@@ -1,6 +1,8 @@
 #include "inverse/solve/split_lights.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -11,7 +13,6 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kDifference = 0.005;  // of the region's diagonal, for second derivatives
-constexpr double kHalfWidth = 0.02;    // of the region's diagonal, from a light to either of its halves
 
 // Σ residual · ∂²φ / ∂x∂x, by differences of gradients.
 Eigen::Matrix3d curvature(const LightResponse& response, const Column& weighted_residual, const LightEstimate& light,
@@ -36,25 +37,34 @@ struct Split {
   double error = 0;
 };
 
-// Its halves take the light's correction with them.
+// Where the two parts of a light are tried, from where it stands along the direction in which it wants to part; of the
+// region's diagonal.
+constexpr std::array<std::array<double, 2>, 5> kParts{{{-0.02, 0.02}, {0, 0.04}, {0, -0.04}, {0, 0.08}, {0, -0.08}}};
+
+// The parts take the light's correction with them.
 Split split_light(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
                   std::vector<Column> columns, const Column& weighted_residual, std::size_t split) {
   const double diagonal = double(response.grid().region.diagonal());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
       curvature(response, weighted_residual, lights[split], kDifference * diagonal));
-  const auto half = [&](double side) {
+  const auto part = [&](double side) {
     LightEstimate light = lights[split];
-    const Eigen::Vector3d beside = light.position + side * kHalfWidth * diagonal * eigen.eigenvectors().col(0);
+    const Eigen::Vector3d beside = light.position + side * diagonal * eigen.eigenvectors().col(0);
     light.position = response.places().nearest(beside).value_or(light.position);
     return light;
   };
-  Split result{lights};
-  result.lights[split] = half(-1);
-  result.lights.push_back(half(1));
-  columns[split] = evaluate_column(response, result.lights[split], Evaluation::kTracedVisibility);
-  columns.push_back(evaluate_column(response, result.lights.back(), Evaluation::kTracedVisibility));
-  result.error = refit_intensities(observations, columns, result.lights);
-  return result;
+  columns.emplace_back();
+  Split best{{}, std::numeric_limits<double>::infinity()};
+  for (const auto& [one, other] : kParts) {
+    Split tried{lights};
+    tried.lights[split] = part(one);
+    tried.lights.push_back(part(other));
+    columns[split] = evaluate_column(response, tried.lights[split], Evaluation::kTracedVisibility);
+    columns.back() = evaluate_column(response, tried.lights.back(), Evaluation::kTracedVisibility);
+    tried.error = refit_intensities(observations, columns, tried.lights);
+    if (tried.error < best.error) best = std::move(tried);
+  }
+  return best;
 }
 
 }  // namespace

@@ -234,6 +234,19 @@ TEST(SplitLights, PartsTwoLightsThatWereSeenAsOne) {
   EXPECT_LT(farthest_from(known, positions_of(two.lights)), 0.01);
 }
 
+TEST(SplitLights, LeavesTheBrighterWhereItStands) {
+  const LightEstimates known{{{1.7, 1.5, 2}, {40, 30, 50}}, {{2.1, 1.8, 2.3}, {5, 8, 4}}};
+  const DirectProblem problem(known);
+  const JointRefinement one =
+      refine_joint(problem.response(), problem.observations(), {{{1.7, 1.5, 2}, Array3d::Ones()}});
+  const auto splits = propose_splits(problem.response(), problem.observations(), one.lights, 1);
+  ASSERT_EQ(splits.size(), 1U);
+  EXPECT_EQ(splits[0][0].position, one.lights[0].position);
+  EXPECT_GT(splits[0][0].intensity.sum(), splits[0][1].intensity.sum());
+  const JointRefinement two = refine_joint(problem.response(), problem.observations(), splits[0]);
+  EXPECT_LT(farthest_from(known, positions_of(two.lights)), 0.01 * problem.diagonal());
+}
+
 TEST(SplitLights, TriesTheLightThatStandsForTwoFirst) {
   const LightEstimates known{
       {{1.7, 1.5, 2}, {20, 12, 8}}, {{2.3, 1.6, 2.1}, {10, 18, 20}}, {{3.3, 2.4, 0.6}, {9, 9, 9}}};
