@@ -30,32 +30,33 @@ class IlluminationResiduals final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
-    const std::vector<ColumnWithGradient> columns = columns_at(parameters[0], with_jacobian);
-    std::vector<Column> values;
-    for (const ColumnWithGradient& column : columns) values.push_back(column.value);
-    const IntensityFit fit = fit_intensities(observations_, values);
+    move_to(parameters[0]);
     Eigen::Map<Column> out(residuals, observations_.wanted.rows(), 3);
     out = -observations_.wanted;
-    for (std::size_t j = 0; j < values.size(); ++j) out += values[j] * fit.intensity[j].matrix().asDiagonal();
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      out += columns_[j].value * fit_.intensity[j].matrix().asDiagonal();
+    }
     out = observations_.sqrt_weight.asDiagonal() * out;
-    if (with_jacobian) fill_jacobian(columns, fit, jacobians[0]);
+    if (jacobians != nullptr && jacobians[0] != nullptr) fill_jacobian(columns_, fit_, jacobians[0]);
     return true;
   }
 
  private:
-  std::vector<ColumnWithGradient> columns_at(const double* parameters, bool with_gradient) const {
-    std::vector<ColumnWithGradient> columns(start_.size());
-    renderer::parallel_for(columns.size(), [&](std::size_t j) {
+  // Ceres asks for the Jacobian where it has asked for the residuals alone before, wherever a step led downwards:
+  // gradients come with the rays that were traced for the latter.
+  void move_to(const double* parameters) const {
+    const std::vector<double> at(parameters, parameters + 3 * start_.size());
+    if (at == at_) return;
+    columns_.resize(start_.size());
+    renderer::parallel_for(columns_.size(), [&](std::size_t j) {
       const Eigen::Vector3d position(parameters + 3 * j);
-      if (with_gradient) {
-        columns[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
-      } else {
-        columns[j].value = response_.evaluate(position, Evaluation::kTracedVisibility);
-      }
-      if (start_[j].correction.size() > 0) columns[j].value += start_[j].correction;
+      columns_[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
+      if (start_[j].correction.size() > 0) columns_[j].value += start_[j].correction;
     });
-    return columns;
+    std::vector<Column> values;
+    for (const ColumnWithGradient& column : columns_) values.push_back(column.value);
+    fit_ = fit_intensities(observations_, values);
+    at_ = at;
   }
 
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -125,6 +126,10 @@ class IlluminationResiduals final : public ceres::CostFunction {
   const LightResponse& response_;
   const Observations& observations_;
   const LightEstimates& start_;  // for the corrections
+  // Where the lights were last, and what they do there.
+  mutable std::vector<double> at_;
+  mutable std::vector<ColumnWithGradient> columns_;
+  mutable IntensityFit fit_;
 };
 
 std::vector<Eigen::Vector3d> positions_of(const double* x, int size) {
@@ -172,6 +177,8 @@ ceres::Solver::Options solver_options(const JointRefinementOptions& options) {
   o.max_num_iterations = options.max_iterations;
   o.function_tolerance = options.function_tolerance;
   o.gradient_tolerance = 1e-12;
+  // From the first step on short enough that most lead downwards.
+  o.initial_trust_region_radius = 10;
   o.parameter_tolerance = 1e-7;
   // Shadow edges make the cost rough: a rise along the way to a deeper valley is allowed.
   o.use_nonmonotonic_steps = true;

@@ -96,16 +96,28 @@ ColumnWithGradient LightResponse::gathered(const UnityLight& light) const {
   return {column_of(0), {column_of(1), column_of(2), column_of(3)}};
 }
 
+// Σ weight(w) · N of its grid light.
+template <class WeightOf>
+Column LightResponse::sum_of_indirect(const std::vector<GridWeight>& weights, const WeightOf& weight) const {
+  using Rows = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;  // as cached
+  const auto count = Eigen::Index(receivers_.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> sum(count, 3);
+  sum.setZero();
+  for (const GridWeight& w : weights) {
+    const float* indirect = &cache_.indirect[w.light * cache_.receiver_count].x;
+    sum += weight(w) * Eigen::Map<const Rows>(indirect, count, 3).cast<double>();
+  }
+  return sum;
+}
+
+Column LightResponse::indirect(const std::vector<GridWeight>& weights) const {
+  return sum_of_indirect(weights, [](const GridWeight& w) { return w.value; });
+}
+
 ColumnWithGradient LightResponse::indirect_with_gradient(const std::vector<GridWeight>& weights) const {
   ColumnWithGradient column{indirect(weights), {}};
-  const auto rows = Eigen::Index(receivers_.size());
   for (int a = 0; a < 3; ++a) {
-    column.gradient[a] = Column::Zero(rows, 3);
-    for (const GridWeight& w : weights) {
-      const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
-      for (Eigen::Index i = 0; i < rows; ++i)
-        column.gradient[a].row(i) += w.gradient[a] * to_eigen(indirect[i]).transpose();
-    }
+    column.gradient[a] = sum_of_indirect(weights, [a](const GridWeight& w) { return w.gradient[a]; });
   }
   return column;
 }
@@ -121,17 +133,6 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light
     const DirectTerm direct = unoccluded_term(receivers_[i], light);
     column.value.row(Eigen::Index(i)).array() += visible[i] * direct.value;
     for (int a = 0; a < 3; ++a) column.gradient[a].row(Eigen::Index(i)).array() += visible[i] * direct.gradient[a];
-  }
-  return column;
-}
-
-Column LightResponse::indirect(const std::vector<GridWeight>& weights) const {
-  Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
-  for (const GridWeight& w : weights) {
-    const Vec3f* indirect = &cache_.indirect[w.light * cache_.receiver_count];
-    for (std::size_t i = 0; i < receivers_.size(); ++i) {
-      column.row(Eigen::Index(i)) += w.value * to_eigen(indirect[i]).transpose();
-    }
   }
   return column;
 }
