@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <nanoflann.hpp>
 
+#include "inverse/transport/mutual_visibility.h"
 #include "renderer/core/sampler.h"
 
 namespace chiaro::inverse {
@@ -24,7 +25,6 @@ constexpr float kInterpolated = 1.8F;          // reaches, from within which rec
 constexpr float kReachCosine = 0.99F;          // between normals, within reach of a record …
 constexpr float kInterpolatedCosine = 0.967F;  // … and of records that are interpolated
 constexpr float kMostRise = 0.25F;             // out of the tangent planes, of the distance
-constexpr float kLift = 0.1F;                  // of the distance: above a bulge of kInterpolatedCosine
 constexpr float kLeastPart = 0.2F;             // of the reach, at which records are dense enough
 constexpr std::size_t kMostShares = 10;
 constexpr double kMostNoise = 1.25;  // sum of the weights' magnitudes: more is extrapolation
@@ -94,13 +94,6 @@ bool alike(const SurfaceSample& a, const SurfaceSample& b, float distance, float
          std::abs(dot(across, b.normal)) <= most;
 }
 
-// Whether nothing stands between, a little above the surface.
-bool see_each_other(const RayTracer& tracer, const SurfaceSample& a, const SurfaceSample& b, float distance) {
-  const Vec3f from = renderer::offset_point(a.position, a.normal) + kLift * distance * a.normal;
-  const Vec3f to = renderer::offset_point(b.position, b.normal) + kLift * distance * b.normal;
-  return !tracer.occluded_between(from, to, 0);
-}
-
 std::vector<std::uint32_t> in_no_order(std::vector<std::uint32_t> receivers, std::uint64_t seed) {
   const auto key = [&](std::uint32_t i) { return renderer::hash_combine(i, std::uint32_t(seed)); };
   std::sort(receivers.begin(), receivers.end(),
@@ -142,7 +135,7 @@ std::vector<Share> interpolate(const RayTracer& tracer, std::span<const SurfaceS
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   for (const auto& [record, distance] : near) {
     const SurfaceSample& other = receivers[record];
-    if (!alike(at, other, distance, kInterpolatedCosine) || !see_each_other(tracer, at, other, distance)) continue;
+    if (!alike(at, other, distance, kInterpolatedCosine) || !see_each_other(tracer, at, other)) continue;
     const Vec3f local = frame.local_from_world(other.position - at.position) / radius;
     basis.emplace_back(1, double(local.x), double(local.y));
     const double kernel = std::pow(1 - double(distance / radius), 2) + 1e-4;

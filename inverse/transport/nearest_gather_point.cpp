@@ -1,9 +1,10 @@
 #include "inverse/transport/nearest_gather_point.h"
 
 #include <array>
-#include <cmath>
 
 #include <nanoflann.hpp>
+
+#include "inverse/transport/mutual_visibility.h"
 
 namespace chiaro::inverse {
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr float kOrientationWeight = 3.0F;  // turning a normal by 1 counts as this many spacings
 constexpr std::size_t kCandidates = 4;
-constexpr float kLift = 0.1F;  // of the distance, above the surface: beyond the bulge between two normals 20° apart
 
 struct Cloud {
   std::vector<SurfaceSample> points;
@@ -30,13 +30,6 @@ struct Cloud {
 };
 
 using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 6, std::uint32_t>;
-
-bool see_each_other(const renderer::RayTracer& tracer, const SurfaceSample& a, const SurfaceSample& b) {
-  const float lift = kLift * length(b.position - a.position);
-  const Vec3f from = renderer::offset_point(a.position, a.normal) + lift * a.normal;
-  const Vec3f to = renderer::offset_point(b.position, b.normal) + lift * b.normal;
-  return !tracer.occluded_between(from, to, 0);
-}
 
 }  // namespace
 

@@ -1,0 +1,17 @@
+#include "inverse/transport/mutual_visibility.h"
+
+namespace chiaro::inverse {
+
+using renderer::SurfaceSample;
+using renderer::Vec3f;
+
+bool see_each_other(const renderer::RayTracer& tracer, const SurfaceSample& a, const SurfaceSample& b) {
+  constexpr float kLift = 0.1F;
+  const float lift = kLift * length(b.position - a.position);
+  const auto above = [&](const SurfaceSample& at) {
+    return renderer::offset_point(at.position, at.normal) + lift * at.normal;
+  };
+  return !tracer.occluded_between(above(a), above(b), 0);
+}
+
+}  // namespace chiaro::inverse
