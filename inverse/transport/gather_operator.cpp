@@ -97,18 +97,22 @@ float typical_spacing(const RayTracer& tracer, std::size_t points) {
   return std::sqrt(2 * (e.x * e.y + e.y * e.z + e.z * e.x) / float(std::max<std::size_t>(1, points)));
 }
 
+// Samples that see no gather point are of no cell.
 void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, const NearestGatherPoint& nearest) {
-  std::vector<std::uint32_t> cell(all.size());
-  renderer::parallel_for(all.size(), [&](std::size_t i) { cell[i] = nearest.find(all[i]); });
+  std::vector<std::optional<std::uint32_t>> cell(all.size());
+  renderer::parallel_for(all.size(), [&](std::size_t i) { cell[i] = nearest.find_seen(all[i]); });
   gather.cell_start.assign(gather.points.size() + 1, 0);
-  for (const std::uint32_t c : cell) ++gather.cell_start[c + 1];
+  for (const auto& c : cell) {
+    if (c) ++gather.cell_start[*c + 1];
+  }
   std::partial_sum(gather.cell_start.begin(), gather.cell_start.end(), gather.cell_start.begin());
   std::vector<std::size_t> next(gather.cell_start.begin(), gather.cell_start.end() - 1);
-  gather.cell_samples.resize(all.size());
+  gather.cell_samples.resize(gather.cell_start.back());
   gather.cell_radius.assign(gather.points.size(), 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    gather.cell_samples[next[cell[i]]++] = all[i];
-    gather.cell_radius[cell[i]] += length_squared(all[i].position - gather.points[cell[i]].position);
+    if (!cell[i]) continue;
+    gather.cell_samples[next[*cell[i]]++] = all[i];
+    gather.cell_radius[*cell[i]] += length_squared(all[i].position - gather.points[*cell[i]].position);
   }
   for (std::size_t c = 0; c < gather.points.size(); ++c) {
     const std::size_t count = gather.cell_start[c + 1] - gather.cell_start[c];
@@ -147,7 +151,7 @@ std::vector<SparseTransport::Entry> row_of(const std::vector<GatherHit>& hits, i
   }
   for (auto& entry : row) entry.weight += hidden_albedo / float(row.size());
   if (!row.empty()) return row;
-  for (const GatherHit& hit : hits) row.push_back({nearest.find(hit.at), hit.albedo / float(rays)});
+  for (const GatherHit& hit : hits) row.push_back({nearest.find_nearest(hit.at), hit.albedo / float(rays)});
   return row;
 }
 

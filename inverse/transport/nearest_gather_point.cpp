@@ -68,8 +68,7 @@ std::optional<std::uint32_t> NearestGatherPoint::find_seen(const SurfaceSample& 
   return std::nullopt;
 }
 
-std::uint32_t NearestGatherPoint::find(const SurfaceSample& at) const {
-  if (const auto seen = find_seen(at)) return *seen;
+std::uint32_t NearestGatherPoint::find_nearest(const SurfaceSample& at) const {
   std::array<std::uint32_t, kCandidates> found{};
   tree_->nearest(at, 1, found);
   return found[0];
