@@ -19,7 +19,7 @@ constexpr double kKnee = 1.25;         // further lights must lower an error tha
 constexpr double kNearNoise = 5;       // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
-constexpr double kClose = 1;           // error from which on interpolated indirect light is not good enough
+constexpr double kOfNoLight = 1;       // error: sets that are no better are not worth exact indirect light
 constexpr double kLeastGain = 0.01;    // of the error, by a light that is there
 constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
 constexpr std::size_t kMostSplits = 3;
@@ -79,20 +79,20 @@ class Search {
     if (best != refined.end()) keep_exactly({*best}, how);
   }
 
-  // Between the lights of a grid indirect light is known less well than targets are: sets that are close to the target
-  // are refined again without interpolation.
+  // Between the lights of a grid indirect light is known less well than targets are: sets are refined again without
+  // interpolation.
   void keep_exactly(std::vector<JointRefinement> refined, const JointRefinementOptions& how) {
-    std::vector<LightEstimates> close;
+    std::vector<LightEstimates> worth_it;
     for (JointRefinement& set : refined) {
-      if (options_.exact != nullptr && set.error < kClose) {
-        close.push_back(std::move(set.lights));
+      if (options_.exact != nullptr && set.error < kOfNoLight) {
+        worth_it.push_back(std::move(set.lights));
       } else {
         keep(std::move(set));
       }
     }
-    if (close.empty()) return;
-    correct_all(close);
-    for (JointRefinement& set : refine_all(close, how)) keep(std::move(set));
+    if (worth_it.empty()) return;
+    correct_all(worth_it);
+    for (JointRefinement& set : refine_all(worth_it, how)) keep(std::move(set));
   }
 
   // All at once, which takes little more than one.

@@ -304,6 +304,11 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   EXPECT_GE(four.lights.size(), 3U);
   EXPECT_LE(four.lights.size(), 4U);
   EXPECT_LT(farthest_from(known_lights(3), positions_of(four.lights)), 0.01 * problem.diagonal());
+  LightEstimates known = known_lights(3);
+  known.push_back({{0.6, 2.5, 0.7}, {5, 6, 4}});
+  known.push_back({{3.4, 0.7, 1.6}, {3, 2, 4}});
+  const DirectProblem five(known);
+  EXPECT_EQ(choose_light_count(five.response(), five.observations(), tree_of(five), options).lights.size(), 4U);
   options = {};
   options.time_limit = 1e-9;
   EXPECT_TRUE(choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
