@@ -127,9 +127,12 @@ Vector3d AllowedPlaces::away_from_surfaces(const Vector3d& position) const {
   return near->point + distance * direction(near->point, position, near->normal);
 }
 
-// The direction to it leads away from the surface, and not past its edge.
-bool AllowedPlaces::is_in_front(const NearestPoint& near, const Vector3d& position) {
-  const double along = (position - near.point).dot(near.normal);
+// The direction to it leads away from the surface, and not past its end.
+bool AllowedPlaces::is_in_front(const MountedSurface& mount, const NearestPoint& near, const Vector3d& position) {
+  const Vector3d way = position - near.point;
+  const double along = way.dot(near.normal);
+  const double beside = (way - along * near.normal).norm();
+  if (near.on_open_edge && beside > tolerance(mount.clearance)) return false;
   return (near.double_sided ? std::abs(along) : along) >= kInFront * near.distance;
 }
 
@@ -137,13 +140,13 @@ Vector3d AllowedPlaces::in_front_of(const MountedSurface& mount, const Vector3d&
   const NearestPoint near = *mount.surface.find(position, kAnywhere);
   const bool behind = near.double_sided && (position - near.point).dot(near.normal) < 0;
   const Vector3d normal = behind ? Vector3d(-near.normal) : near.normal;
-  const Vector3d outwards = is_in_front(near, position) ? direction(near.point, position, normal) : normal;
+  const Vector3d outwards = is_in_front(mount, near, position) ? direction(near.point, position, normal) : normal;
   return near.point + mount.clearance * outwards;
 }
 
 bool AllowedPlaces::hangs_on(const MountedSurface& mount, const Vector3d& position) const {
   const NearestPoint near = *mount.surface.find(position, kAnywhere);
-  return is_in_front(near, position) && std::abs(near.distance - mount.clearance) <= tolerance(mount.clearance);
+  return is_in_front(mount, near, position) && std::abs(near.distance - mount.clearance) <= tolerance(mount.clearance);
 }
 
 bool AllowedPlaces::contains(const Vector3d& position) const {

@@ -53,7 +53,7 @@ class AllowedPlaces {
     NearestSurface surface;
     double clearance = 0;
   };
-  static bool is_in_front(const NearestPoint& near, const Eigen::Vector3d& position);
+  static bool is_in_front(const MountedSurface& mount, const NearestPoint& near, const Eigen::Vector3d& position);
   Eigen::Vector3d in_front_of(const MountedSurface& mount, const Eigen::Vector3d& position) const;
   bool hangs_on(const MountedSurface& mount, const Eigen::Vector3d& position) const;
   bool clear_of_surfaces(const Eigen::Vector3d& position) const;

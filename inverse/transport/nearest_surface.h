@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "inverse/transport/box_tree.h"
+#include "inverse/transport/open_edges.h"
 #include "renderer/scene/scene.h"
 
 namespace chiaro::inverse {
@@ -17,6 +18,7 @@ struct NearestPoint {
   Eigen::Vector3d normal;  // unit, on the side of the triangle's winding; zero for a triangle without area
   double distance = 0;     // metres
   bool double_sided = false;
+  bool on_open_edge = false;  // the surface of a node ends here; not looked for on the whole scene
 };
 
 // Of all drawn surfaces of the scene, or those of the node's instances; empty where there are none.
@@ -32,12 +34,13 @@ class NearestSurface {
 
  private:
   struct WorldTriangle {
-    std::array<renderer::Vec3f, 3> corners;
     bool double_sided = false;
+    OpenEdges open{};
   };
-  static NearestPoint nearest_on(const WorldTriangle& triangle, const Eigen::Vector3d& position);
+  NearestPoint nearest_on(std::uint32_t item, const Eigen::Vector3d& position) const;
 
-  std::vector<WorldTriangle> triangles_;
+  std::vector<WorldCorners> corners_;
+  std::vector<WorldTriangle> triangles_;  // beside their corners
   BoxTree tree_;
 };
 

@@ -70,6 +70,35 @@ TEST_F(Places, HangInFrontOfANode) {
   }
 }
 
+// A floor ends at its rim, and a ball nowhere.
+TEST_F(Places, HangOnSurfacesNotBesideTheirRims) {
+  renderer::Scene scene;
+  test::add_mesh(scene, test::rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, 3), test::lambert({1, 1, 1}), "floor");
+  test::add_mesh(scene, test::rectangle({0, 3, 0}, {2, 0, 0}, {0, 0, 2}), test::lambert({1, 1, 1}), "ceiling");
+  const Box3f bounds = renderer::RayTracer(scene).bounds();
+  const AllowedPlaces places(scene, bounds, {.mounts = {{"floor", 0.15}}});
+  int from_beside = 0;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    const Vector3d from = random_position(k) - Vector3d(1, 1, 1);
+    const auto place = places.nearest(from);
+    ASSERT_TRUE(place) << k;
+    EXPECT_NEAR(place->y(), 0.15, 2e-4) << k;
+    EXPECT_GE(std::min(place->x(), place->z()), -2e-4) << k;
+    EXPECT_LE(std::max(place->x(), place->z()), 2 + 2e-4) << k;
+    from_beside += std::min(from.x(), from.z()) < 0 || std::max(from.x(), from.z()) > 2;
+  }
+  EXPECT_GT(from_beside, 100);
+  EXPECT_TRUE(places.contains({2, 0.15, 1}));
+  EXPECT_FALSE(places.contains({2 + 0.15 * std::sin(0.9), 0.15 * std::cos(0.9), 1}));
+
+  const AllowedPlaces around(scene_, bounds_, {.mounts = {{scene_.instances.back().name, 0.15}}});
+  const Vector3d middle = to_eigen(surface_bounds(scene_, scene_.instances.back().name).center());
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    const Vector3d from = random_position(k), place = *around.nearest(from);
+    EXPECT_GT((place - middle).normalized().dot((from - middle).normalized()), 0.99) << k;
+  }
+}
+
 // Where one of several regions is too near to surfaces the others are left.
 TEST_F(Places, OnSurfacesThatAreTooNearCountForNothing) {
   const std::string node = scene_.instances.back().name;
