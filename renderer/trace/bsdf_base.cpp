@@ -10,7 +10,7 @@ namespace {
 constexpr Vec3f kWhite{1, 1, 1};
 constexpr float kLeastAlpha = 1e-3F;     // a smaller one is a mirror to any eye and overflows D
 constexpr float kPunctualAlpha = 5e-3F;  // a lamp of 1 cm at a metre
-constexpr float kBlurredAlpha = 0.03F;
+constexpr float kBlurredAlpha = 0.1F;
 constexpr float kLeastBending = 0.01F;  // of eta from 1; less does not refract
 
 }  // namespace
@@ -20,6 +20,11 @@ float least_alpha(float roughness) { return std::max(roughness * roughness, kLea
 float widened_alpha(float alpha, LightSource source) {
   if (source == LightSource::kPunctualWidened) return std::max(alpha, kPunctualAlpha);
   return source == LightSource::kPunctualBlurred ? std::max(alpha, kBlurredAlpha) : alpha;
+}
+
+float widening_gain(float cosine, float alpha, float widened) {
+  if (widened <= alpha) return 1;
+  return (1 - specular_albedo(cosine, alpha).loss()) / (1 - specular_albedo(cosine, widened).loss());
 }
 
 bool is_rough(float alpha) { return alpha >= kBlurredAlpha; }
@@ -74,7 +79,7 @@ float BsdfBase::facet_transmittance(float cosine) const {
 Vec3f BsdfBase::reflection(Vec3f wo, Vec3f wi, float alpha, float diffuse_fade) const {
   const Vec3f h = normalize(wo + wi);
   const float specular = ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha);
-  const Vec3f facets = specular * facet_reflectance(dot(wo, h));
+  const Vec3f facets = (widening_gain(wo.z, alpha_, alpha) * specular) * facet_reflectance(dot(wo, h));
   const float diffusion = (1 - metallic_) * diffusion_ * diffuse_fade;
   if (!(diffusion > 0)) return wi.z * facets;
   const float below_mean = 1 - mean_specular_albedo(alpha_).at(coat_f0_, f90_);

@@ -38,7 +38,9 @@ struct BsdfSketch {
 
 float least_alpha(float roughness);                    // roughness², and no less than floats can take
 float widened_alpha(float alpha, LightSource source);  // as the kind of source asks for
-bool is_rough(float alpha);                            // spreads light more than kPunctualBlurred would
+// By what a widened lobe is brighter, so that all of its light together stays the same. cosine: of the viewer.
+float widening_gain(float cosine, float alpha, float widened);
+bool is_rough(float alpha);  // spreads light more than kPunctualBlurred would
 
 class BsdfBase {
  public:

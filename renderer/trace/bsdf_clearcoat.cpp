@@ -21,7 +21,8 @@ Vec3f BsdfClearcoat::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) c
   const float alpha = widened_alpha(alpha_, source);
   const Vec3f h = normalize(wo + wi);
   const float fresnel = kF0 + (1 - kF0) * schlick_weight(dot(wo, h));
-  const float value = strength_ * fresnel * ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha) * wi.z;
+  const float facets = ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha);
+  const float value = strength_ * fresnel * widening_gain(wo.z, alpha_, alpha) * facets * wi.z;
   return {value, value, value};
 }
 

@@ -14,10 +14,16 @@ constexpr int kBatches = 4;
 // Each punctual light is asked once per point, and not one per path, where they are no more than so many per path.
 constexpr std::size_t kLightsPerPath = 4;
 
+// No receiver shows a lamp mirrored in polish: it gets what polish throws onto it, which is blurred at once.
+TraceOptions with_wide_highlights(TraceOptions options) {
+  options.wide_highlights = true;
+  return options;
+}
+
 // How the illumination of each of many points is sampled.
 struct Sampling {
   Sampling(const RayTracer& tracer, const Lights& lights, const TraceOptions& options_)
-      : paths(tracer, lights, options_),
+      : paths(tracer, lights, with_wide_highlights(options_)),
         options(options_),
         with_punctual(has_blended_surfaces(tracer.scene()) ||
                       lights.size() > std::max(LightSelection::kFew, kLightsPerPath * std::size_t(options.samples))),

@@ -11,7 +11,7 @@ struct TraceOptions {
   std::uint64_t seed = 0;
   bool scene_emission = true;  // the scene's emissive surfaces give light too
   // Mirrors show punctual lights as lamps of some size, and blurred in what they throw on other surfaces: bias for less
-  // noise, off unless asked for.
+  // noise, in frames off unless asked for, in illumination always there.
   bool wide_highlights = false;
 };
 

@@ -145,6 +145,30 @@ TEST(TraceIllumination, EmissivePanelMatchesItsFormFactor) {
   EXPECT_NEAR(result.value[0].z, 1 * form_factor, 6 * double(result.standard_error[0].z) + 1e-4);
 }
 
+// A mirror above a lamp throws the light of the lamp's image, although no path meets the lamp itself.
+TEST(TraceIllumination, MirrorsThrowTheLightOfTheImage) {
+  Scene scene;
+  Material mirror;
+  mirror.roughness = 0;
+  add_mesh(scene, rectangle({-20, 3, -20}, {40, 0, 0}, {0, 0, 40}), mirror, "mirror");
+  const RayTracer tracer(scene);
+  std::vector<SurfaceSample> points;
+  for (int k = 0; k < 20; ++k) points.push_back({{0.1F * float(k) - 1, 0, 0.3F}, {0, 1, 0}});
+  const Lights lamp{PointLight{"", {0.5F, 2, 0}, {10, 10, 10}}};
+  const Vec3f image{0.5F, 4, 0};
+  const auto all = trace_illumination(tracer, points, lamp, {.samples = 20000, .bounces = 1, .seed = 3});
+  const auto direct = trace_illumination(tracer, points, lamp, {.samples = 1, .bounces = 0});
+  double found = 0, expected = 0, variance = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f way = image - points[i].position;
+    expected += 10 * double(way.y) / (double(kPi) * std::pow(double(length(way)), 3));
+    found += double(all.value[i].x - direct.value[i].x);
+    variance += std::pow(double(all.standard_error[i].x), 2);
+  }
+  EXPECT_LT(std::sqrt(variance), 0.005 * expected);
+  EXPECT_NEAR(found, expected, 4 * std::sqrt(variance) + 0.03 * expected);  // a lobe of some width looks past the image
+}
+
 TEST(TraceIllumination, ErrorShrinksAndCoversTheTruth) {
   const Scene scene = test::corner_with_ball();
   const RayTracer tracer(scene);
