@@ -47,7 +47,7 @@ void add_grid_options(CLI::App& command, GridOptions& options) {
   add_repeated(command,
                {"--region", "NODE|x0,y0,z0,x1,y1,z1",
                 "Where lights may stand: the bounds of a node, or a box in metres; again for a further one (default: "
-                "the whole scene)"},
+                "the whole scene, and solves look beyond it if need be)"},
                [&options](const std::string& text) { options.regions.push_back(parse_region_text(text)); });
 }
 

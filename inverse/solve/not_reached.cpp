@@ -86,15 +86,20 @@ bool falls_still(const SolveResult& result, std::size_t count) {
   return curve.back().relative_l2 < kStillFalls * curve[curve.size() - 2].relative_l2;
 }
 
+bool at_border_of(const renderer::Box3f& box, Vec3f position) {
+  const Vec3f inside = min(position - box.min, box.max - position);
+  return box.contains(position) && double(min_component(inside)) <= kAtBorder * double(box.diagonal());
+}
+
 bool at_border(const SolveProblem& problem, const SolveResult& result) {
-  if (problem.places.boxes.empty()) return false;
+  std::vector<renderer::Box3f> boxes = problem.places.boxes;
+  if (boxes.empty() && problem.places.mounts.empty()) boxes = {result.region};
   for (const FoundLight& found : result.lights) {
     const auto* light = std::get_if<renderer::PointLight>(&found.light);
-    for (const renderer::Box3f& box : problem.places.boxes) {
-      if (light == nullptr || !box.contains(light->position)) continue;
-      const Vec3f inside = min(light->position - box.min, box.max - light->position);
-      if (double(min_component(inside)) <= kAtBorder * double(box.diagonal())) return true;
-    }
+    const auto is_at = [&](const renderer::Box3f& box) {
+      return light != nullptr && at_border_of(box, light->position);
+    };
+    if (std::any_of(boxes.begin(), boxes.end(), is_at)) return true;
   }
   return false;
 }

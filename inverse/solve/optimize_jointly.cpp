@@ -117,8 +117,12 @@ std::vector<LightEstimates> earlier_sets(const SolveOptions& options) {
   return sets;
 }
 
-Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
-                         StageClock& clock) {
+bool is_explained(const JointLights& found) {
+  return found.beside_surfaces.empty() && found.error <= kExplained * found.noise;
+}
+
+JointLights search_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
+                           StageClock& clock) {
   const SolveOptions& options = search.options;
   const LightResponse& response = search.response;
   const int already = int(beside_surfaces.size());
@@ -128,7 +132,9 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
                                options.max_lights - already};
   const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  const LightEstimates start = joined(beside_surfaces, cut.lights);
+  JointLights found;
+  found.start = joined(beside_surfaces, cut.lights);
+  found.cut = cut.nodes;
   remaining.rules = search.problem.intensities;
 
   const LightCountOptions count_options{options.max_lights - already,
@@ -149,38 +155,49 @@ Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfac
     remaining = less(search.searched, response, beside_surfaces);
     count = find_the_rest();
   }
-  const std::vector<LightSet> error_curve = error_curve_of(response, search.reported, beside_surfaces, count);
+  found.error_curve = error_curve_of(response, search.reported, beside_surfaces, count);
   clock.finish("joint_refinement",
                {{"refinements", count.refinements}, {"relative_l2", count.error}, {"noise", remaining.noise}});
   // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
   // blind to all others.
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
-  const PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
+  PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
-  const bool explained = beside_surfaces.empty() && polished.error <= kExplained * last.noise;
-  const bool far = beside_surfaces.empty() && polished.error > kFarFromTarget;
-  const bool tied = ties_lights_together(search.problem);
+  found.beside_surfaces = std::move(beside_surfaces);
+  found.others = std::move(polished.lights);
+  found.error = polished.error;
+  found.noise = last.noise;
+  found.sets = std::move(count.sets);
+  found.out_of_time = count.out_of_time;
+  return found;
+}
+
+Optimum conclude(const JointSearch& search, const JointLights& found, StageClock& clock) {
+  const SolveOptions& options = search.options;
+  const bool explained = is_explained(found), tied = ties_lights_together(search.problem);
+  const bool far = found.beside_surfaces.empty() && found.error > kFarFromTarget;
   const auto at_last = [&] {
-    if (count.out_of_time || explained) return joined(beside_surfaces, polished.lights);
-    if (far) return best_over_many(search, polished.lights, count.sets, clock);
-    const LightEstimates all = joined(beside_surfaces, polished.lights);
+    if (found.out_of_time || explained) return joined(found.beside_surfaces, found.others);
+    if (far) return best_over_many(search, found.others, found.sets, clock);
+    const LightEstimates all = joined(found.beside_surfaces, found.others);
     return tied ? best_over_many(search, all, {}, clock) : all;
   };
   const LightEstimates all = at_last();
   const bool may_share_places = !(search.problem.places.light_distance > 0);
   const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
-  std::size_t held = beside_surfaces.size();
-  LightEstimates lights = options.exact_lights > 0 ? exactly : without_negligible(response, search.judged, all, held);
+  std::size_t held = found.beside_surfaces.size();
+  LightEstimates lights =
+      options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
   return {std::move(lights),
-          start,
-          count.out_of_time          ? "time limit"
+          found.start,
+          found.out_of_time          ? "time limit"
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more",
-          cut.nodes,
-          error_curve,
-          explained && polished.error <= kNothingElse * last.noise,
-          !count.out_of_time && (far || tied),
-          !count.out_of_time && !far && !tied,
+          found.cut,
+          found.error_curve,
+          explained && found.error <= kNothingElse * found.noise,
+          !found.out_of_time && (far || tied),
+          !found.out_of_time && !far && !tied,
           held};
 }
 

@@ -36,6 +36,20 @@ struct JointSearch {
   const HeldOut* held_out;       // absent where lights beside surfaces were found
 };
 
+// What the search has come to.
+struct JointLights {
+  LightEstimates beside_surfaces, others;
+  double error = 0, noise = 0;       // of the others
+  std::vector<LightEstimates> sets;  // of them, the best of each number, from 1
+  bool out_of_time = false;
+  LightEstimates start;
+  std::vector<int> cut;  // of the light tree, nodes
+  std::vector<LightSet> error_curve;
+};
+
+// They leave nothing but noise, or nearly so.
+bool is_explained(const JointLights& found);
+
 // At most, or exactly where so many are asked for.
 int most_lights(const SolveOptions& options);
 
@@ -46,9 +60,11 @@ bool ties_lights_together(const SolveProblem& problem);
 std::vector<LightEstimates> earlier_sets(const SolveOptions& options);
 
 // From a cut of the tree to the number of lights, where they stand and how bright they are: insertion, joint descent,
-// elimination (choose_light_count.h), and refinement over many receivers. `beside_surfaces`: lights found before, which
-// stay.
-Optimum optimize_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
-                         StageClock& clock);
+// elimination (choose_light_count.h). `beside_surfaces`: lights found before, which stay.
+JointLights search_jointly(const JointSearch& search, LightEstimates beside_surfaces, const LightTree& tree,
+                           StageClock& clock);
+
+// The lights that are left of them, as many as asked for: those far from the target with intensities by many receivers.
+Optimum conclude(const JointSearch& search, const JointLights& found, StageClock& clock);
 
 }  // namespace chiaro::inverse

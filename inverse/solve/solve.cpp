@@ -8,13 +8,9 @@
 
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
-#include "inverse/solve/important_vertices.h"
 #include "inverse/solve/light_intervals.h"
-#include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
-#include "inverse/solve/optimize_jointly.h"
-#include "inverse/solve/optimize_simplex.h"
-#include "inverse/solve/prepare_transport.h"
+#include "inverse/solve/region_search.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/settle_by_trace.h"
 #include "inverse/solve/stage_clock.h"
@@ -27,9 +23,8 @@ namespace {
 
 using renderer::Error;
 
-constexpr int kFixedSamples = 512;      // per important vertex
-constexpr std::size_t kHeldOut = 1500;  // receivers that tell how many lights there are
-constexpr double kOnSurface = 0.5;      // of a target's receivers must lie on the scene
+constexpr int kMostRegions = 4;     // one larger than the other
+constexpr double kOnSurface = 0.5;  // of a target's receivers must lie on the scene
 
 void check_target(const SolveProblem& problem) {
   const double fraction = fraction_on_surface(problem.tracer, problem.target.receivers);
@@ -44,16 +39,6 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   std::vector<std::size_t> indices(count);
   std::iota(indices.begin(), indices.end(), std::size_t{0});
   return indices;
-}
-
-std::unique_ptr<HeldOut> hold_out(const SolveProblem& problem, BakeSettings settings, const SolveOptions& options,
-                                  const renderer::Control& control) {
-  const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
-  const auto samples = samples_at(problem.target, draw.chosen);
-  settings.seed = fresh_seed(options.seed, 5);
-  Observations observations =
-      observe_target(problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, options, control));
-  return std::make_unique<HeldOut>(problem.tracer, samples, std::move(observations), settings);
 }
 
 // Brightest contribution first.
@@ -81,52 +66,9 @@ void report_lights(const LightResponse& response, const Observations& observatio
   for (const auto& [j, k] : intervals.confounded) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
 }
 
-// Sections 3.4.2 and 3.4.3.
-Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
-                              const SolveOptions& options, StageClock& clock) {
-  CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
-  if (options.exact_lights > 0) cut_options = {0, options.exact_lights, options.exact_lights};
-  const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
-  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  if (cut.lights.empty()) return {{}, {}, "no light of the grid reaches the painted surfaces", {}};
-  const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
-  clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
-  const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
-  return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light",
-          cut.nodes};
-}
-
 [[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {
   throw Error({problem.tracer.scene().path, "solve", "no light possible: " + why,
                "a target that lights inside the region can produce"});
-}
-
-AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid) {
-  std::vector<Eigen::Vector3d> stay;
-  for (const renderer::Light& light : problem.kept_lights) {
-    if (const auto* point = std::get_if<renderer::PointLight>(&light)) stay.push_back(to_eigen(point->position));
-    if (const auto* spot = std::get_if<renderer::SpotLight>(&light)) stay.push_back(to_eigen(spot->position));
-  }
-  return {problem.tracer.scene(), grid.region, problem.places, std::move(stay)};
-}
-
-std::string where_lights_may_stand(const PlaceRules& rules) {
-  std::vector<std::string> nodes;
-  for (const Mount& mount : rules.mounts) nodes.push_back('"' + mount.node + '"');
-  const std::string hanging = fmt::format("where lights hang on {}", fmt::join(nodes, ", "));
-  if (nodes.empty()) return "in the region";
-  return rules.boxes.empty() ? hanging : "in the region or " + hanging;
-}
-
-std::string so_far_from_surfaces(const PlaceRules& rules) {
-  return rules.surface_distance > 0 ? fmt::format(" {} m from all surfaces", rules.surface_distance) : "";
-}
-
-[[noreturn]] void no_place(const SolveProblem& problem) {
-  throw Error({problem.tracer.scene().path, "solve",
-               fmt::format("no light possible: nowhere {} is a place{}", where_lights_may_stand(problem.places),
-                           so_far_from_surfaces(problem.places)),
-               "a smaller distance to surfaces, or a larger region"});
 }
 
 void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
@@ -169,6 +111,36 @@ LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, c
 
 }  // namespace
 
+// Nobody says where the region of the lights ends.
+bool region_may_grow(const SolveProblem& problem) { return !problem.grid.region && !problem.cache_file; }
+
+// Where lights of an earlier solve stand it reaches, too. Absent: as the problem says.
+std::optional<Box3f> first_region(const SolveProblem& problem, const SolveOptions& options) {
+  if (!region_may_grow(problem) || options.earlier.empty()) return std::nullopt;
+  Box3f region = default_region(problem.tracer);
+  for (const LightSet& set : options.earlier) {
+    for (const renderer::PointLight& light : set.lights) region.extend(light.position);
+  }
+  return region;
+}
+
+// In ever larger regions, as long as that brings the lights clearly closer.
+std::unique_ptr<RegionSearch> search(const SearchBasis& basis, const SolveProblem& problem, StageClock& clock,
+                                     SolveResult& result) {
+  std::unique_ptr<RegionSearch> best;
+  std::optional<Box3f> region = first_region(problem, basis.options);
+  for (int regions = 0; regions < kMostRegions && (!best || region); ++regions) {
+    auto search = std::make_unique<RegionSearch>(basis, problem, region, clock);
+    result.initial_seconds += search->initial_seconds;
+    result.optimal_seconds += search->optimal_seconds;
+    result.cache_seconds += search->cache_seconds;
+    region = search->wider_region();
+    if (best && !search->is_clearly_better_than(*best)) break;
+    best = std::move(search);
+  }
+  return best;
+}
+
 SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock;
   SolveResult result;
@@ -182,73 +154,39 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.important_vertices = int(importance.chosen.size());
   result.initial_seconds += clock.finish("important_vertices", {{"count", double(importance.chosen.size())}});
 
-  const PreparedTransport transport = prepare_transport(problem, importance.chosen, control);
-  result.cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
-                                                {"indirect_relative_error", transport.cache.indirect_relative_error}});
   const auto samples = samples_at(problem.target, importance.chosen);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
-  const Observations published = observe_target(problem.target, {importance.chosen, importance.probability}, fixed);
-  if (!(published.wanted.array() > 0).any())
+  const SearchBasis basis{options,
+                          control,
+                          importance,
+                          samples,
+                          observe_target(problem.target, {importance.chosen, importance.probability}, fixed),
+                          region_may_grow(problem)};
+  if (!(basis.published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  const LightResponse response(problem.tracer, samples, transport.cache, allowed_places(problem, transport.cache.grid));
-  if (response.grid_lights_near_places().empty()) no_place(problem);
   clock.finish("fixed_illumination", {});
 
-  const bool joint = options.method == SolveMethod::kJoint;
-  const Observations reported = joint ? standing_for_all(published) : published;
-  Observations judged = joint ? weighted_by_objective(reported, options.objective) : published;
-  judged.rules = problem.intensities;
-  Observations searched = published;
-  std::optional<ExactIndirect> exact;
-  std::unique_ptr<HeldOut> held_out;
-  LightEstimates beside_surfaces;
-  if (joint) {
-    exact.emplace(problem.tracer, samples, transport.cache.settings);
-    clock.finish("exact_indirect", {});
-    if (options.earlier.empty() && !ties_lights_together(problem)) {
-      beside_surfaces = find_lights_beside_surfaces(response, *exact, judged, most_lights(options));
-    }
-    searched = published.noise > 0 ? weighted_by_noise(published, transport.cache.indirect_relative_error)
-                                   : with_capped_weights(weighted_by_objective(published, options.objective));
-    result.optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces.size())}});
-    if (beside_surfaces.empty()) {
-      held_out = hold_out(problem, transport.cache.settings, options, control);
-      clock.finish("held_out", {});
-    }
-  }
-
-  const Observations remaining = less(searched, response, beside_surfaces);
-  const LightDistribution distribution = estimate_light_distribution(response, remaining, options.weak_light);
-  result.initial_seconds += clock.finish("nnls", distribution_figures(distribution));
-  const LightEstimates clusters = segment_distribution(distribution, remaining);
-  result.initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
-
-  const LightTree tree = make_light_tree(response, remaining, clusters);
-  result.optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
+  const std::unique_ptr<RegionSearch> searched = search(basis, problem, clock, result);
   const double before = clock.total();
-  Optimum optimum =
-      joint
-          ? optimize_jointly({problem, options, control, response, *exact, searched, judged, reported, held_out.get()},
-                             beside_surfaces, tree, clock)
-          : optimize_as_published(response, published, tree, options, clock);
+  Optimum optimum = searched->conclude(clock);
   result.optimal_seconds += clock.total() - before;
-
-  optimum.lights =
-      filled_up(response, judged, std::move(optimum.lights), std::size_t(std::max(1, options.exact_lights)));
+  optimum.lights = filled_up(searched->response, searched->judged, std::move(optimum.lights),
+                             std::size_t(std::max(1, options.exact_lights)));
   require_all_lights(problem, options, optimum.lights);
-  LightsByTrace by_trace = traced(problem, options, control, response, optimum, clock);
+  LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
   result.optimal_seconds += by_trace.settling_seconds;
-  report_lights(response, reported, by_trace, result);
-  result.initial_relative_l2 = relative_error(reported, illumination_of(response, optimum.start));
-  result.relative_l2_cached = relative_error(reported, illumination_of(response, by_trace.lights));
+  report_lights(searched->response, searched->reported, by_trace, result);
+  result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
+  result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
   result.termination = optimum.termination;
   result.error_curve = optimum.error_curve;
+  result.region = searched->transport.cache.grid.region;
   result.target_noise = target_noise(problem.target);
   judge(problem, options, std::move(by_trace.traced), result);
   result.stages = clock.stages();
   if (!options.report_folder.empty()) {
-    write_report({problem.tracer.scene(), problem.target, importance, transport.cache.grid, distribution, clusters,
-                  tree, optimum.cut, by_trace.lights, result},
+    write_report({problem.tracer.scene(), problem.target, importance, searched->transport.cache.grid,
+                  searched->distribution, searched->clusters, searched->tree, optimum.cut, by_trace.lights, result},
                  options.report_folder);
     clock.finish("report", {});
     result.stages = clock.stages();

@@ -77,6 +77,7 @@ struct SolveResult {
   std::vector<StageReport> stages;
   int important_vertices = 0;
   std::string termination;
+  renderer::Box3f region;               // of the grid that lights were sought in; empty where they were in place
   std::vector<NotReached> not_reached;  // worst first; none where noise explains the error, or nearly so
   std::string advice;                   // what may help there
   std::vector<std::pair<int, int>>

@@ -10,6 +10,8 @@ namespace chiaro::inverse {
 // both.
 std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t purpose);
 
+inline constexpr int kFixedSamples = 512;  // enough of fixed_illumination()
+
 // What shines without the lights sought: emissive surfaces and kept lights.
 std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
                                       int samples, const SolveOptions& options, const renderer::Control& control);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
 #include "inverse/transport/eigen_vectors.h"
@@ -75,6 +76,18 @@ void check_node(const Mount& mount, const renderer::Scene& scene) {
 }
 
 }  // namespace
+
+std::string where_lights_may_stand(const PlaceRules& rules) {
+  std::vector<std::string> nodes;
+  for (const Mount& mount : rules.mounts) nodes.push_back('"' + mount.node + '"');
+  const std::string hanging = fmt::format("where lights hang on {}", fmt::join(nodes, ", "));
+  if (nodes.empty()) return "in the region";
+  return rules.boxes.empty() ? hanging : "in the region or " + hanging;
+}
+
+std::string so_far_from_surfaces(const PlaceRules& rules) {
+  return rules.surface_distance > 0 ? fmt::format(" {} m from all surfaces", rules.surface_distance) : "";
+}
 
 LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules) {
   grid.parts = rules.boxes;

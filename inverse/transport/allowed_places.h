@@ -26,6 +26,10 @@ struct PlaceRules {
   double light_distance = 0;             // metres, between any two lights, at least
 };
 
+// For messages: "in the region", "where lights hang on …"; and " 0.3 m from all surfaces", or nothing.
+std::string where_lights_may_stand(const PlaceRules& rules);
+std::string so_far_from_surfaces(const PlaceRules& rules);
+
 // A grid of lights where the rules allow any, and no farther than a cell from there: over the boxes, and where lights
 // hang on surfaces over the whole scene. Error for a node that is not there.
 LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules);

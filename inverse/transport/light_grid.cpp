@@ -16,6 +16,7 @@ namespace {
 using renderer::Error;
 
 constexpr float kDefaultInset = 0.02F;      // of the scene's extent, on every side
+constexpr float kThin = 0.1F;               // of the scene's longest side: lights stand so far before and behind it
 constexpr float kInsideFraction = 0.6F;     // of probe rays that meet back faces, inside a solid
 constexpr float kTouching = 0.02F;          // of the spacing
 constexpr float kRandomClearance = 1e-3F;   // of the region's diagonal
@@ -75,11 +76,6 @@ std::array<int, 3> counts_for(Vec3f extent, double lights) {
   return counts;
 }
 
-Box3f default_region(const Box3f& bounds) {
-  const Vec3f inset = kDefaultInset * bounds.extent();
-  return {bounds.min + inset, bounds.max - inset};
-}
-
 LightGrid empty_grid(const Box3f& region, const std::array<int, 3>& counts) {
   LightGrid grid;
   grid.region = region;
@@ -111,7 +107,7 @@ bool looks_inside(const Probe& p) { return p.back_fraction >= kInsideFraction; }
 // Whether the sides of the scene's surfaces tell inside from outside. Where almost all of the scene looks like the
 // inside of a solid, its walls are turned outwards, and they do not.
 bool sides_tell(const renderer::RayTracer& tracer, const std::vector<Vec3f>& directions) {
-  const LightGrid probes = empty_grid(default_region(tracer.bounds()), {8, 8, 8});
+  const LightGrid probes = empty_grid(default_region(tracer), {8, 8, 8});
   int inside = 0;
   for (std::size_t i = 0; i < 512; ++i) {
     if (looks_inside(probe(tracer, node_position(probes, i), directions))) ++inside;
@@ -143,6 +139,18 @@ std::optional<Box3f> six_numbers(const std::string& text) {
 }
 
 }  // namespace
+
+Box3f default_region(const renderer::RayTracer& tracer) {
+  Box3f region = tracer.bounds();
+  const Vec3f extent = region.extent();
+  const float thin = kThin * max_component(extent);
+  for (int a = 0; a < 3; ++a) {
+    const float outwards = extent[a] < thin ? thin : -kDefaultInset * extent[a];
+    region.min[a] -= outwards;
+    region.max[a] += outwards;
+  }
+  return region;
+}
 
 GridCell cell_of(const LightGrid& grid, const LightGrid::FinerCell& finer) {
   const std::uint64_t nx = std::uint64_t(grid.counts[0]) << finer.level;
@@ -185,7 +193,7 @@ bool FreeSpace::contains(Vec3f position, float clearance) const {
 }
 
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
-  const Box3f region = options.region.value_or(default_region(tracer.bounds()));
+  const Box3f region = options.region.value_or(default_region(tracer));
   LightGrid grid =
       empty_grid(region, options.counts[0] > 0 ? options.counts : counts_for(region.extent(), options.lights));
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];

@@ -49,9 +49,12 @@ std::size_t node_of(const LightGrid& grid, const GridCell& cell);
 // Gives these cells, ascending, lights of their own in place of all finer cells that the grid had.
 void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells);
 
+// The scene's bounds, a little inside, but on both sides of what is flat.
+Box3f default_region(const renderer::RayTracer& tracer);
+
 struct LightGridOptions {
   std::array<int, 3> counts{};       // 0, 0, 0: from the region's shape, for about so many nodes:
-  std::optional<Box3f> region = {};  // default: the scene's bounds, a little inside
+  std::optional<Box3f> region = {};  // absent: default_region()
   std::vector<Box3f> parts = {};     // of the region, the only ones of interest; none: all of it
   double lights = 700;
   double error = 0;  // of interpolation, for choose_light_grid(); 0: whatever comes of the above

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/error.h"
 #include "tests/inverse/solve/painted_corner.h"
 #include "tests/support/save_transport_cache.h"
@@ -213,6 +214,27 @@ TEST(Solve, LightsStandInTheirRegion) {
         EXPECT_LE(p[a], double(problem.grid.region->max[a]) + 1e-5) << int(method);
       }
     }
+  }
+}
+
+// A box on open ground, lit from far above and beside it: nothing but the ground says how far lights may be.
+TEST(Solve, FindsLightsOutsideTheBoundsOfAnOpenScene) {
+  renderer::Scene scene = test::plane_scene({0.5F, 0.5F, 0.5F});
+  test::add_mesh(scene, test::rectangle({1, 0, 1}, {0, 0.8F, 0}, {0, 0, 2}, 3), test::lambert({0.5F, 0.5F, 0.5F}),
+                 "fence");
+  const PaintedCorner open(0.5F, std::move(scene));
+  const LightEstimates known{{{-3, 4, 2}, {300, 200, 100}}, {{2, 3, -6}, {100, 200, 300}}};
+  const Target target = open.target(known, 0);
+  SolveProblem problem = problem_of(open, target, 0);
+  const SolveResult result = solve(problem, quick());
+  ASSERT_EQ(result.lights.size(), 2U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * open.diagonal());
+  EXPECT_LT(result.relative_l2, 0.02);
+  EXPECT_FALSE(open.tracer().bounds().contains(Vec3f{-3, 4, 2}));
+  // Where the user says how far it reaches, it reaches no farther.
+  problem.grid.region = default_region(open.tracer());
+  for (const Vector3d& p : positions_of(solve(problem, quick()))) {
+    EXPECT_TRUE(problem.grid.region->contains(to_vec3f(p)));
   }
 }
 

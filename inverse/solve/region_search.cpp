@@ -1,0 +1,158 @@
+#include "inverse/solve/region_search.h"
+
+#include <fmt/format.h>
+
+#include "inverse/solve/lights_beside_surfaces.h"
+#include "inverse/solve/observe_target.h"
+#include "inverse/solve/optimize_simplex.h"
+#include "inverse/solve/report.h"
+#include "inverse/solve/traced_light.h"
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/error.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kHeldOut = 1500;  // receivers that tell how many lights there are
+constexpr double kAtBorder = 0.005;     // of the region's diagonal
+constexpr double kCloseEnough = 0.01;   // error, whatever the noise
+constexpr double kMatters = 0.05;       // of the target's norm: a light that a larger region is for
+constexpr float kGrowth = 0.5F;         // of the region's longest side
+constexpr double kClearlyBetter = 0.9;  // of an error, or less
+
+std::unique_ptr<HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
+  const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
+  const auto samples = samples_at(problem.target, draw.chosen);
+  settings.seed = fresh_seed(basis.options.seed, 5);
+  Observations observations = observe_target(
+      problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control));
+  return std::make_unique<HeldOut>(problem.tracer, samples, std::move(observations), settings);
+}
+
+AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid) {
+  std::vector<Vector3d> stay;
+  for (const renderer::Light& light : problem.kept_lights) {
+    if (const auto* point = std::get_if<renderer::PointLight>(&light)) stay.push_back(to_eigen(point->position));
+    if (const auto* spot = std::get_if<renderer::SpotLight>(&light)) stay.push_back(to_eigen(spot->position));
+  }
+  return {problem.tracer.scene(), grid.region, problem.places, std::move(stay)};
+}
+
+[[noreturn]] void no_place(const SolveProblem& problem) {
+  throw renderer::Error({problem.tracer.scene().path, "solve",
+                         fmt::format("no light possible: nowhere {} is a place{}",
+                                     where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)),
+                         "a smaller distance to surfaces, or a larger region"});
+}
+
+// Sections 3.4.2 and 3.4.3.
+Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
+                              const SolveOptions& options, StageClock& clock) {
+  CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
+  if (options.exact_lights > 0) cut_options = {0, options.exact_lights, options.exact_lights};
+  const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
+  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
+  if (cut.lights.empty()) return {{}, {}, "no light of the grid reaches the painted surfaces", {}};
+  const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
+  clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
+  const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
+  return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light",
+          cut.nodes};
+}
+
+bool is_joint(const SearchBasis& basis) { return basis.options.method == SolveMethod::kJoint; }
+
+// The faces of the region that one of the lights is at, moved outwards.
+std::optional<Box3f> grown_at(const Box3f& region, const std::vector<Vector3d>& lights) {
+  const float near = float(kAtBorder) * region.diagonal(), by = kGrowth * max_component(region.extent());
+  Box3f grown = region;
+  for (const Vector3d& light : lights) {
+    const Vec3f at = to_vec3f(light);
+    for (int a = 0; a < 3; ++a) {
+      if (at[a] - region.min[a] <= near) grown.min[a] = region.min[a] - by;
+      if (region.max[a] - at[a] <= near) grown.max[a] = region.max[a] + by;
+    }
+  }
+  return grown.min == region.min && grown.max == region.max ? std::nullopt : std::optional(grown);
+}
+
+SolveProblem with_region(SolveProblem problem, const std::optional<Box3f>& region) {
+  if (region) problem.grid.region = region;
+  return problem;
+}
+
+}  // namespace
+
+RegionSearch::RegionSearch(const SearchBasis& basis_, const SolveProblem& problem_, const std::optional<Box3f>& region,
+                           StageClock& clock)
+    : basis(basis_),
+      problem(with_region(problem_, region)),
+      transport(prepare_transport(problem, basis.importance.chosen, basis.control)),
+      response(problem.tracer, basis.samples, transport.cache, allowed_places(problem, transport.cache.grid)) {
+  if (response.grid_lights_near_places().empty()) no_place(problem);
+  cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
+                                         {"indirect_relative_error", transport.cache.indirect_relative_error}});
+  reported = is_joint(basis) ? standing_for_all(basis.published) : basis.published;
+  judged = is_joint(basis) ? weighted_by_objective(reported, basis.options.objective) : basis.published;
+  judged.rules = problem.intensities;
+  searched_ = basis.published;
+  if (is_joint(basis)) look_beside_surfaces(clock);
+
+  const Observations remaining = less(searched_, response, beside_surfaces_);
+  distribution = estimate_light_distribution(response, remaining, basis.options.weak_light);
+  initial_seconds += clock.finish("nnls", distribution_figures(distribution));
+  clusters = segment_distribution(distribution, remaining);
+  initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
+  tree = make_light_tree(response, remaining, clusters);
+  optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
+  if (!is_joint(basis)) return;
+  const double before = clock.total();
+  found_ = search_jointly(joint_search(), beside_surfaces_, tree, clock);
+  optimal_seconds += clock.total() - before;
+}
+
+void RegionSearch::look_beside_surfaces(StageClock& clock) {
+  const TransportCache& cache = transport.cache;
+  exact_.emplace(problem.tracer, basis.samples, cache.settings);
+  clock.finish("exact_indirect", {});
+  if (basis.options.earlier.empty() && !ties_lights_together(problem)) {
+    beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis.options));
+  }
+  searched_ = basis.published.noise > 0
+                  ? weighted_by_noise(basis.published, cache.indirect_relative_error)
+                  : with_capped_weights(weighted_by_objective(basis.published, basis.options.objective));
+  optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces_.size())}});
+  if (!beside_surfaces_.empty()) return;
+  held_out_ = hold_out(basis, problem, cache.settings);
+  clock.finish("held_out", {});
+}
+
+JointSearch RegionSearch::joint_search() const {
+  return {problem, basis.options, basis.control, response, *exact_, searched_, judged, reported, held_out_.get()};
+}
+
+std::optional<Box3f> RegionSearch::wider_region() const {
+  const bool may_grow =
+      basis.region_may_grow && is_joint(basis) && !found_.out_of_time && found_.beside_surfaces.empty();
+  if (!may_grow || is_explained(found_) || found_.error < kCloseEnough) return std::nullopt;
+  const std::vector<Column> columns = evaluate_columns(response, found_.others, Evaluation::kTracedVisibility);
+  std::vector<Vector3d> lights;
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const double norm = contribution_norm(judged, columns[j], found_.others[j].intensity);
+    if (norm > kMatters * judged.target_norm) lights.push_back(found_.others[j].position);
+  }
+  return grown_at(transport.cache.grid.region, lights);
+}
+
+bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
+  return found_.beside_surfaces.empty() && found_.error < kClearlyBetter * other.found_.error;
+}
+
+Optimum RegionSearch::conclude(StageClock& clock) const {
+  return is_joint(basis) ? inverse::conclude(joint_search(), found_, clock)
+                         : optimize_as_published(response, basis.published, tree, basis.options, clock);
+}
+
+}  // namespace chiaro::inverse

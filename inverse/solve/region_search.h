@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+
+#include "inverse/solve/important_vertices.h"
+#include "inverse/solve/optimize_jointly.h"
+#include "inverse/solve/prepare_transport.h"
+
+namespace chiaro::inverse {
+
+// What is searched with, whatever the region.
+struct SearchBasis {
+  const SolveOptions& options;
+  const renderer::Control& control;
+  const Importance& importance;
+  std::vector<renderer::SurfaceSample> samples;  // the important vertices
+  Observations published;                        // what they want, by the weights of (3.6)
+  bool region_may_grow;                          // nobody says where it ends
+};
+
+// Lights sought in one region, from its transport up to the trace that they are judged by.
+class RegionSearch {
+ public:
+  // Keeps references. region: of the light grid; absent: as the problem says.
+  RegionSearch(const SearchBasis& basis, const SolveProblem& problem, const std::optional<Box3f>& region,
+               StageClock& clock);
+  RegionSearch(const RegionSearch&) = delete;
+  RegionSearch& operator=(const RegionSearch&) = delete;
+
+  // Where a larger region may hold better lights: those found press against its border, and do not explain the target.
+  std::optional<Box3f> wider_region() const;
+  // Of two searches, the one that came closer.
+  bool is_clearly_better_than(const RegionSearch& other) const;
+
+  // The lights that are left. Once, at last.
+  Optimum conclude(StageClock& clock) const;
+
+  const SearchBasis& basis;
+  const SolveProblem problem;
+  const PreparedTransport transport;
+  const LightResponse response;
+  Observations reported;  // as (3.6) judges them
+  Observations judged;    // as the objective judges them
+  LightDistribution distribution;
+  LightEstimates clusters;
+  LightTree tree;
+  double initial_seconds = 0, optimal_seconds = 0, cache_seconds = 0;
+
+ private:
+  JointSearch joint_search() const;
+  void look_beside_surfaces(StageClock& clock);
+
+  Observations searched_;  // no receiver hides the light of all others
+  std::optional<ExactIndirect> exact_;
+  std::unique_ptr<HeldOut> held_out_;
+  LightEstimates beside_surfaces_;
+  JointLights found_;
+};
+
+}  // namespace chiaro::inverse
