@@ -17,7 +17,6 @@ constexpr double kCell = 0.08;        // of the receivers' diagonal: what counts
 constexpr double kLeastCell = 0.005;  // of the squared error, that a cell counts with
 constexpr double kLeastShare = 0.05;  // of the squared error
 constexpr std::size_t kMostPlaces = 3;
-constexpr double kAtBorder = 0.005;   // of the region's diagonal
 constexpr double kStillFalls = 0.95;  // of the error, or less, by the last light
 
 // Part, the error's sign, and a cell of space.

@@ -16,19 +16,18 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kHeldOut = 1500;  // receivers that tell how many lights there are
-constexpr double kAtBorder = 0.005;     // of the region's diagonal
 constexpr double kCloseEnough = 0.01;   // error, whatever the noise
 constexpr double kMatters = 0.05;       // of the target's norm: a light that a larger region is for
 constexpr float kGrowth = 0.5F;         // of the region's longest side
 constexpr double kClearlyBetter = 0.9;  // of an error, or less
 
-std::unique_ptr<HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
+std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
   const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
   const auto samples = samples_at(problem.target, draw.chosen);
   settings.seed = fresh_seed(basis.options.seed, 5);
   Observations observations = observe_target(
       problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control));
-  return std::make_unique<HeldOut>(problem.tracer, samples, std::move(observations), settings);
+  return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), settings);
 }
 
 AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid) {
@@ -86,7 +85,7 @@ SolveProblem with_region(SolveProblem problem, const std::optional<Box3f>& regio
 }  // namespace
 
 RegionSearch::RegionSearch(const SearchBasis& basis_, const SolveProblem& problem_, const std::optional<Box3f>& region,
-                           StageClock& clock)
+                           const RegionSearch* smaller, StageClock& clock)
     : basis(basis_),
       problem(with_region(problem_, region)),
       transport(prepare_transport(problem, basis.importance.chosen, basis.control)),
@@ -98,7 +97,7 @@ RegionSearch::RegionSearch(const SearchBasis& basis_, const SolveProblem& proble
   judged = is_joint(basis) ? weighted_by_objective(reported, basis.options.objective) : basis.published;
   judged.rules = problem.intensities;
   searched_ = basis.published;
-  if (is_joint(basis)) look_beside_surfaces(clock);
+  if (is_joint(basis)) look_beside_surfaces(smaller, clock);
 
   const Observations remaining = less(searched_, response, beside_surfaces_);
   distribution = estimate_light_distribution(response, remaining, basis.options.weak_light);
@@ -113,9 +112,10 @@ RegionSearch::RegionSearch(const SearchBasis& basis_, const SolveProblem& proble
   optimal_seconds += clock.total() - before;
 }
 
-void RegionSearch::look_beside_surfaces(StageClock& clock) {
+void RegionSearch::look_beside_surfaces(const RegionSearch* smaller, StageClock& clock) {
   const TransportCache& cache = transport.cache;
-  exact_.emplace(problem.tracer, basis.samples, cache.settings);
+  exact_ = smaller != nullptr ? smaller->exact_
+                              : std::make_shared<const ExactIndirect>(problem.tracer, basis.samples, cache.settings);
   clock.finish("exact_indirect", {});
   if (basis.options.earlier.empty() && !ties_lights_together(problem)) {
     beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis.options));
@@ -125,7 +125,7 @@ void RegionSearch::look_beside_surfaces(StageClock& clock) {
                   : with_capped_weights(weighted_by_objective(basis.published, basis.options.objective));
   optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces_.size())}});
   if (!beside_surfaces_.empty()) return;
-  held_out_ = hold_out(basis, problem, cache.settings);
+  held_out_ = smaller != nullptr ? smaller->held_out_ : hold_out(basis, problem, cache.settings);
   clock.finish("held_out", {});
 }
 

@@ -21,9 +21,10 @@ struct SearchBasis {
 // Lights sought in one region, from its transport up to the trace that they are judged by.
 class RegionSearch {
  public:
-  // Keeps references. region: of the light grid; absent: as the problem says.
+  // Keeps references. region: of the light grid; absent: as the problem says. smaller: the search in a smaller region
+  // before, which has made what is the same in all; absent: this is the first.
   RegionSearch(const SearchBasis& basis, const SolveProblem& problem, const std::optional<Box3f>& region,
-               StageClock& clock);
+               const RegionSearch* smaller, StageClock& clock);
   RegionSearch(const RegionSearch&) = delete;
   RegionSearch& operator=(const RegionSearch&) = delete;
 
@@ -48,11 +49,11 @@ class RegionSearch {
 
  private:
   JointSearch joint_search() const;
-  void look_beside_surfaces(StageClock& clock);
+  void look_beside_surfaces(const RegionSearch* smaller, StageClock& clock);
 
   Observations searched_;  // no receiver hides the light of all others
-  std::optional<ExactIndirect> exact_;
-  std::unique_ptr<HeldOut> held_out_;
+  std::shared_ptr<const ExactIndirect> exact_;
+  std::shared_ptr<const HeldOut> held_out_;
   LightEstimates beside_surfaces_;
   JointLights found_;
 };

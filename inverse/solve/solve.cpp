@@ -130,7 +130,7 @@ std::unique_ptr<RegionSearch> search(const SearchBasis& basis, const SolveProble
   std::unique_ptr<RegionSearch> best;
   std::optional<Box3f> region = first_region(problem, basis.options);
   for (int regions = 0; regions < kMostRegions && (!best || region); ++regions) {
-    auto search = std::make_unique<RegionSearch>(basis, problem, region, clock);
+    auto search = std::make_unique<RegionSearch>(basis, problem, region, best.get(), clock);
     result.initial_seconds += search->initial_seconds;
     result.optimal_seconds += search->optimal_seconds;
     result.cache_seconds += search->cache_seconds;

@@ -13,6 +13,9 @@
 
 namespace chiaro::inverse {
 
+// Of a region's diagonal: a light so near its border would rather stand outside.
+inline constexpr double kAtBorder = 0.005;
+
 // Lights hang in front of this node's surfaces, and not beside their edges.
 struct Mount {
   std::string node;

@@ -34,13 +34,14 @@ class NearestSurface {
 
  private:
   struct WorldTriangle {
+    WorldCorners corners;
     bool double_sided = false;
     OpenEdges open{};
   };
-  NearestPoint nearest_on(std::uint32_t item, const Eigen::Vector3d& position) const;
+  static NearestPoint nearest_on(const WorldTriangle& triangle, const Eigen::Vector3d& position);
+  void mark_open_edges();
 
-  std::vector<WorldCorners> corners_;
-  std::vector<WorldTriangle> triangles_;  // beside their corners
+  std::vector<WorldTriangle> triangles_;
   BoxTree tree_;
 };
 
