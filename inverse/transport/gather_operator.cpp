@@ -305,7 +305,9 @@ std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& 
   std::vector<std::vector<Vec3f>> all;
   for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
     const auto some = lights.subspan(first, std::min<std::size_t>(kLightBlock, lights.size() - first));
-    if (some.size() <= LightQuad::kLanes) {  // a third of the time of a block
+    if (some.size() == 1) {
+      append_lanes(from_gather_points(gather, direct_at_gather_points<OneLight>(tracer, gather, some)), 1, all);
+    } else if (some.size() <= LightQuad::kLanes) {  // a third of the time of a block
       append_lanes(from_gather_points(gather, direct_at_gather_points<LightQuad>(tracer, gather, some)), some.size(),
                    all);
     } else {
@@ -313,6 +315,18 @@ std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& 
     }
   }
   return all;
+}
+
+std::vector<OneLight> indirect_illumination(const RayTracer& tracer, const GatherOperator& gather,
+                                            const UnityLight& light) {
+  std::vector<OneLight> direct(gather.points.size());
+  for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto value = float(direct_term_at_gather_point(tracer, gather, i, light).value);
+      for (auto& channel : direct[i].channel) channel[0] = value;
+    }
+  });
+  return from_gather_points(gather, direct);
 }
 
 std::vector<LightQuad> indirect_illumination_with_gradient(const RayTracer& tracer, const GatherOperator& gather,

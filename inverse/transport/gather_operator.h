@@ -75,7 +75,11 @@ std::vector<std::vector<renderer::Vec3f>> indirect_illumination_by_light(const r
                                                                          std::span<const renderer::Vec3f> lights);
 
 // Indirect illumination of all receivers under one unity light of any kind, for a shadow ray per gather point and
-// little else: lane 0; lanes 1, 2, 3: its derivative by the light's x, y, z (per metre) where no shadow edge moves.
+// little else.
+std::vector<OneLight> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
+                                            const UnityLight& light);
+
+// The same in lane 0; lanes 1, 2, 3: its derivative by the light's x, y, z (per metre) where no shadow edge moves.
 std::vector<LightQuad> indirect_illumination_with_gradient(const renderer::RayTracer& tracer,
                                                            const GatherOperator& gather, const UnityLight& light);
 

@@ -100,9 +100,9 @@ std::vector<Lanes> all_bounces(const Interreflection& k, const std::vector<Lanes
   return x;
 }
 
-std::array<double, 3> norms(const std::vector<LightQuad>& light) {
+std::array<double, 3> norms(const std::vector<OneLight>& light) {
   std::array<double, 3> squares{};
-  for (const LightQuad& at : light) {
+  for (const OneLight& at : light) {
     for (int c = 0; c < 3; ++c) squares[c] += double(at.channel[c][0]) * double(at.channel[c][0]);
   }
   for (double& s : squares) s = std::sqrt(s);
@@ -111,8 +111,8 @@ std::array<double, 3> norms(const std::vector<LightQuad>& light) {
 
 // By the power method, from light everywhere; how much some powers grow, as corners let single ones swing.
 std::array<double, 3> spectral_radius(const SparseTransport& k) {
-  std::vector<LightQuad> light(k.row_count()), next(k.row_count());
-  for (LightQuad& at : light) {
+  std::vector<OneLight> light(k.row_count()), next(k.row_count());
+  for (OneLight& at : light) {
     for (auto& channel : at.channel) channel[0] = 1;
   }
   std::array<double, 3> growth{};  // its logarithm
@@ -171,6 +171,11 @@ std::vector<LightBlock> sum_of_bounces(const Interreflection& interreflection, c
 
 std::vector<LightQuad> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightQuad>& direct,
                                       int bounces) {
+  return sum_of_any(interreflection, direct, bounces);
+}
+
+std::vector<OneLight> sum_of_bounces(const Interreflection& interreflection, const std::vector<OneLight>& direct,
+                                     int bounces) {
   return sum_of_any(interreflection, direct, bounces);
 }
 

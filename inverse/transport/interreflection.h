@@ -32,5 +32,7 @@ std::vector<LightBlock> sum_of_bounces(const Interreflection& interreflection, c
                                        int bounces);
 std::vector<LightQuad> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightQuad>& direct,
                                       int bounces);
+std::vector<OneLight> sum_of_bounces(const Interreflection& interreflection, const std::vector<OneLight>& direct,
+                                     int bounces);
 
 }  // namespace chiaro::inverse

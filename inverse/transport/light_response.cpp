@@ -19,6 +19,15 @@ void check_kind(const UnityLight& light, Evaluation evaluation, const GatherOper
   CHIARO_CHECK(gather != nullptr || evaluation != Evaluation::kExact);
 }
 
+template <class Lanes>
+Column column_of(const std::vector<Lanes>& illumination, int lane) {
+  Column column(Eigen::Index(illumination.size()), 3);
+  for (std::size_t i = 0; i < illumination.size(); ++i) {
+    for (int c = 0; c < 3; ++c) column(Eigen::Index(i), c) = double(illumination[i].channel[c][lane]);
+  }
+  return column;
+}
+
 std::vector<std::size_t> lights_near(const LightGrid& grid, const AllowedPlaces& places) {
   constexpr double kNowhere = std::numeric_limits<double>::infinity();
   std::vector<double> distance(grid.positions.size());
@@ -84,16 +93,18 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluati
 }
 
 // Lane 0 of each block is the value, the others the derivatives.
-ColumnWithGradient LightResponse::gathered(const UnityLight& light) const {
+ColumnWithGradient LightResponse::gathered_with_gradient(const UnityLight& light) const {
   const std::vector<LightQuad> indirect = indirect_illumination_with_gradient(tracer_, *gather_, light);
-  const auto column_of = [&](int lane) {
-    Column column(Eigen::Index(indirect.size()), 3);
-    for (std::size_t i = 0; i < indirect.size(); ++i) {
-      for (int c = 0; c < 3; ++c) column(Eigen::Index(i), c) = double(indirect[i].channel[c][lane]);
-    }
-    return column;
-  };
-  return {column_of(0), {column_of(1), column_of(2), column_of(3)}};
+  return {column_of(indirect, 0), {column_of(indirect, 1), column_of(indirect, 2), column_of(indirect, 3)}};
+}
+
+Column LightResponse::exact(const UnityLight& light) const {
+  Column column = column_of(indirect_illumination(tracer_, *gather_, light), 0);
+  const std::vector<double> visible = visibility(light.position, Evaluation::kExact, {});
+  for (std::size_t i = 0; i < receivers_.size(); ++i) {
+    if (visible[i] > 0) column.row(Eigen::Index(i)).array() += unoccluded_term(receivers_[i], light).value;
+  }
+  return column;
 }
 
 // Σ weight(w) · N of its grid light.
@@ -127,7 +138,7 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light
   const bool exact = evaluation == Evaluation::kExact;
   const std::vector<GridWeight> weights = exact ? std::vector<GridWeight>() : interpolation_.weights(light.position);
   const std::vector<double> visible = visibility(light.position, evaluation, weights);
-  ColumnWithGradient column = exact ? gathered(light) : indirect_with_gradient(weights);
+  ColumnWithGradient column = exact ? gathered_with_gradient(light) : indirect_with_gradient(weights);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     if (!(visible[i] > 0)) continue;
     const DirectTerm direct = unoccluded_term(receivers_[i], light);
@@ -162,8 +173,8 @@ Column LightResponse::unoccluded(const Vector3d& position) const {
 }
 
 Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) const {
-  if (evaluation == Evaluation::kExact) return evaluate_with_gradient(light, evaluation).value;
   check_kind(light, evaluation, gather_);
+  if (evaluation == Evaluation::kExact) return exact(light);
   const std::vector<GridWeight> weights = interpolation_.weights(light.position);
   Column column = indirect(weights);
   add_direct(light.position, visibility(light.position, evaluation, weights), column);

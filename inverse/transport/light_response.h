@@ -64,7 +64,8 @@ class LightResponse {
   Column sum_of_indirect(const std::vector<GridWeight>& weights, const WeightOf& weight) const;
   Column indirect(const std::vector<GridWeight>& weights) const;
   ColumnWithGradient indirect_with_gradient(const std::vector<GridWeight>& weights) const;
-  ColumnWithGradient gathered(const UnityLight& light) const;
+  ColumnWithGradient gathered_with_gradient(const UnityLight& light) const;
+  Column exact(const UnityLight& light) const;
   void add_direct(const Eigen::Vector3d& position, const std::vector<double>& visible, Column& column) const;
   std::vector<double> visibility(const Eigen::Vector3d& position, Evaluation evaluation,
                                  const std::vector<GridWeight>& weights) const;

@@ -39,18 +39,18 @@ template <class Lanes>
   *result = sum;
 }
 
+template <class Lanes>
 [[gnu::always_inline]] inline void multiply_any_row(const SparseTransport::Entry* entry,
-                                                    const SparseTransport::Entry* end, const LightQuad* in,
-                                                    LightQuad* result) {
+                                                    const SparseTransport::Entry* end, const Lanes* in, Lanes* result) {
   // Two sums at once, as each would wait for its last addition.
-  LightQuad even, odd;
+  Lanes even, odd;
   for (; end - entry >= 2; entry += 2) {
     add_product(entry[0], in, even);
     add_product(entry[1], in, odd);
   }
   if (entry != end) add_product(*entry, in, even);
   for (int c = 0; c < 3; ++c) {
-    for (int l = 0; l < LightQuad::kLanes; ++l) result->channel[c][l] = even.channel[c][l] + odd.channel[c][l];
+    for (int l = 0; l < Lanes::kLanes; ++l) result->channel[c][l] = even.channel[c][l] + odd.channel[c][l];
   }
 }
 
@@ -61,6 +61,11 @@ CHIARO_DISPATCH void multiply_row(const SparseTransport::Entry* entry, const Spa
 
 CHIARO_DISPATCH void multiply_row(const SparseTransport::Entry* entry, const SparseTransport::Entry* end,
                                   const LightQuad* in, LightQuad* result) {
+  multiply_any_row(entry, end, in, result);
+}
+
+CHIARO_DISPATCH void multiply_row(const SparseTransport::Entry* entry, const SparseTransport::Entry* end,
+                                  const OneLight* in, OneLight* result) {
   multiply_any_row(entry, end, in, result);
 }
 
@@ -119,6 +124,10 @@ void multiply(const SparseTransport& matrix, std::span<const LightQuad> in, std:
   multiply_all(matrix, in, result);
 }
 
+void multiply(const SparseTransport& matrix, std::span<const OneLight> in, std::span<OneLight> result) {
+  multiply_all(matrix, in, result);
+}
+
 void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const LightBlock> in,
                    std::span<LightBlock> result) {
   multiply_each(matrix, first, in, result);
@@ -126,6 +135,11 @@ void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<c
 
 void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const LightQuad> in,
                    std::span<LightQuad> result) {
+  multiply_each(matrix, first, in, result);
+}
+
+void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const OneLight> in,
+                   std::span<OneLight> result) {
   multiply_each(matrix, first, in, result);
 }
 

@@ -45,16 +45,20 @@ struct alignas(4 * Lanes) LightLanes {
 // A bake handles lights this many at a time …
 inline constexpr int kLightBlock = 16;
 using LightBlock = LightLanes<kLightBlock>;
-// … and one light with its derivatives, or up to four lights, take less.
+// … one light with its derivatives, or up to four lights, take less, and one light alone the least.
 using LightQuad = LightLanes<4>;
+using OneLight = LightLanes<1>;
 
 // result[i] = Σ_k row(i)[k].weight · in[column], per channel and light, for all rows.
 void multiply(const SparseTransport& matrix, std::span<const LightBlock> in, std::span<LightBlock> result);
 void multiply(const SparseTransport& matrix, std::span<const LightQuad> in, std::span<LightQuad> result);
+void multiply(const SparseTransport& matrix, std::span<const OneLight> in, std::span<OneLight> result);
 // The same for the rows from `first` on, as many as there are results; in one thread.
 void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const LightBlock> in,
                    std::span<LightBlock> result);
 void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const LightQuad> in,
                    std::span<LightQuad> result);
+void multiply_rows(const SparseTransport& matrix, std::size_t first, std::span<const OneLight> in,
+                   std::span<OneLight> result);
 
 }  // namespace chiaro::inverse

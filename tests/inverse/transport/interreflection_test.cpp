@@ -74,6 +74,7 @@ TEST(Interreflection, AllBouncesSolveTheSystem) {
       const auto k = make_interreflection(SparseTransport::from_rows(random_bounces(albedo, touching)));
       expect_solution(k, direct_light<LightBlock>());
       expect_solution(k, direct_light<LightQuad>());
+      expect_solution(k, direct_light<OneLight>());
       expect_solution(transposed(k), direct_light<LightBlock>());
     }
   }

@@ -81,6 +81,8 @@ TEST_F(ResponseOfARoom, EveryWayToEvaluateAgrees) {
     EXPECT_LT((value - with_gradient).norm(), 1e-5 * value.norm());
     EXPECT_LT((value - response_.evaluate(x, Evaluation::kInterpolated)).norm(), 1e-5 * value.norm());
     EXPECT_GT(response_.interpolated_indirect(x).minCoeff(), 0);
+    const Column exact = response_.evaluate(x, Evaluation::kExact);
+    EXPECT_LT((exact - response_.evaluate_with_gradient(x, Evaluation::kExact).value).norm(), 1e-6 * exact.norm());
   }
 }
 
