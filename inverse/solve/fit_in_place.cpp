@@ -153,10 +153,12 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.target_noise = target_noise(problem.target);
   result.important_vertices = int(observations.wanted.rows());
   result.termination = "all lights stay where they are";
-  const int fresh_samples = verification_samples(options, problem.target.receivers.size());
-  judge(problem, options, trace_afresh(problem, found_lights(result), fresh_samples, options, control), result);
-  clock.finish("verification",
-               {{"relative_l2", result.relative_l2}, {"relative_standard_error", result.verification_noise}});
+  FreshTrace traced = trace_for_verification(problem, found_lights(result), options, control);
+  const int fresh_samples = traced.samples;
+  judge(problem, options, std::move(traced), result);
+  clock.finish("verification", {{"samples", double(fresh_samples)},
+                                {"relative_l2", result.relative_l2},
+                                {"relative_standard_error", result.verification_noise}});
   result.stages = clock.stages();
   result.total_seconds = clock.total();
   return result;

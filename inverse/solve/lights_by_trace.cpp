@@ -26,9 +26,9 @@ void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
 
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                            const LightEstimates& lights, StageClock& clock) {
-  const int samples = verification_samples(options, problem.target.receivers.size());
-  LightsByTrace by_trace{lights, trace_afresh(problem, point_lights(lights), samples, options, control)};
-  clock.finish("verification", {{"relative_standard_error", relative_standard_error(by_trace.traced.all)}});
+  LightsByTrace by_trace{lights, trace_for_verification(problem, point_lights(lights), options, control)};
+  clock.finish("verification", {{"samples", double(by_trace.traced.samples)},
+                                {"relative_standard_error", relative_standard_error(by_trace.traced.all)}});
   return by_trace;
 }
 

@@ -38,7 +38,7 @@ struct SolveOptions {
   int exact_lights = 0;   // 0: as many as it takes
   double time_limit = 0;  // seconds; 0: none
   int verification_samples =
-      0;  // paths per receiver of the final, fresh evaluation; 0: 16 to 1024 by the number of receivers
+      0;  // paths per receiver of the final, fresh evaluation; 0: as trace_for_verification() chooses
   std::uint64_t seed = 0;
   std::vector<LightSet> earlier;        // of another solve of the same: nothing is searched, they are only refined
   std::filesystem::path report_folder;  // empty: none; what each stage found is written there (report.h)

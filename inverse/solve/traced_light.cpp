@@ -2,20 +2,62 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "inverse/solve/not_reached.h"
+#include "inverse/solve/observe_target.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
+constexpr int kFirstPart = 8;               // of the samples: tells how many it takes
+constexpr double kNoiseBesideTarget = 0.5;  // of the target's: adds an eighth to it
+constexpr double kNoiseBesideError = 0.1;   // of what the lights leave unexplained
 
 bool has_fixed_light(const SolveProblem& problem) {
   const auto& materials = problem.tracer.scene().materials;
   return !problem.kept_lights.empty() ||
          std::any_of(materials.begin(), materials.end(),
                      [](const renderer::Material& m) { return max_component(m.emission) > 0; });
+}
+
+FreshTrace traced_with_seed(const SolveProblem& problem, const renderer::Lights& lights, int samples,
+                            std::uint64_t seed, const renderer::Control& control) {
+  renderer::Lights all = lights;
+  all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
+  const renderer::TraceOptions trace{samples, problem.bake.bounces, seed, true};
+  auto traced = trace_illumination_by_light(problem.tracer, problem.target.receivers.samples, all, trace, control);
+  traced.of_light.resize(lights.size());
+  return {std::move(traced.total), std::move(traced.of_light), samples};
+}
+
+// Both together, as of all their samples.
+FreshTrace joined(FreshTrace first, const FreshTrace& second) {
+  const float b = float(second.samples) / float(first.samples + second.samples), a = 1 - b;
+  const auto average = [&](std::vector<Vec3f>& of_first, const std::vector<Vec3f>& of_second) {
+    for (std::size_t i = 0; i < of_first.size(); ++i) of_first[i] = a * of_first[i] + b * of_second[i];
+  };
+  average(first.all.value, second.all.value);
+  for (std::size_t l = 0; l < first.of_light.size(); ++l) average(first.of_light[l], second.of_light[l]);
+  for (std::size_t i = 0; i < first.all.standard_error.size(); ++i) {
+    Vec3f& error = first.all.standard_error[i];
+    for (int c = 0; c < 3; ++c) error[c] = std::hypot(a * error[c], b * second.all.standard_error[i][c]);
+  }
+  first.samples += second.samples;
+  return first;
+}
+
+// How many samples it takes until noise no longer matters.
+double samples_needed(const SolveProblem& problem, const FreshTrace& traced) {
+  const Target& target = problem.target;
+  const double noise = relative_standard_error(traced.all), of_target = target_noise(target);
+  const double error = relative_l2(traced.all.value, target.illumination, target.weight);
+  const double unexplained = std::sqrt(std::max(0.0, error * error - noise * noise - of_target * of_target));
+  const double may_be = std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
+  if (noise <= may_be) return traced.samples;
+  return may_be > 0 ? traced.samples * std::pow(noise / may_be, 2) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -36,13 +78,17 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
 
 FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples,
                         const SolveOptions& options, const renderer::Control& control) {
-  renderer::Lights all = lights;
-  all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
-  const Receivers& receivers = problem.target.receivers;
-  const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, 2), true};
-  auto traced = trace_illumination_by_light(problem.tracer, receivers.samples, all, trace, control);
-  traced.of_light.resize(lights.size());
-  return {std::move(traced.total), std::move(traced.of_light)};
+  return traced_with_seed(problem, lights, samples, fresh_seed(options.seed, 2), control);
+}
+
+FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
+                                  const SolveOptions& options, const renderer::Control& control) {
+  const int most = verification_samples(options, problem.target.receivers.size());
+  const int first = options.verification_samples > 0 ? most : std::max(kLeastVerificationSamples, most / kFirstPart);
+  FreshTrace traced = trace_afresh(problem, lights, first, options, control);
+  const int more = int(std::min(std::ceil(samples_needed(problem, traced)), double(most))) - traced.samples;
+  if (more <= 0) return traced;
+  return joined(std::move(traced), traced_with_seed(problem, lights, more, fresh_seed(options.seed, 4), control));
 }
 
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {

@@ -16,16 +16,22 @@ inline constexpr int kFixedSamples = 512;  // enough of fixed_illumination()
 std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& at,
                                       int samples, const SolveOptions& options, const renderer::Control& control);
 
-// Paths per receiver of a final evaluation, as asked for or by the number of receivers.
+// Paths per receiver of a final evaluation: as asked for, or the most that this number of receivers gets.
 int verification_samples(const SolveOptions& options, std::size_t receivers);
 
 // All receivers' illumination, path traced afresh.
 struct FreshTrace {
   renderer::Illumination all;                // cd/m²; with what shines anyway
   std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
+  int samples = 0;                           // paths per receiver
 };
 FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples,
                         const SolveOptions& options, const renderer::Control& control);
+
+// With as many samples as were asked for; or else with as many as it takes until its noise hardly adds to that of the
+// target, or to what the lights leave unexplained, and no more than verification_samples().
+FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
+                                  const SolveOptions& options, const renderer::Control& control);
 
 // Fills in how far the lights of the result are from the target.
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result);

@@ -1,0 +1,74 @@
+#include "inverse/solve/traced_light.h"
+
+#include <gtest/gtest.h>
+
+#include "inverse/solve/observe_target.h"
+#include "tests/inverse/solve/painted_corner.h"
+
+namespace chiaro::inverse {
+namespace {
+
+using tests::known_lights;
+using tests::PaintedCorner;
+
+class TraceForVerification : public ::testing::Test {
+ protected:
+  FreshTrace trace(const Target& target, const LightEstimates& lights, int asked_for = 0) const {
+    SolveOptions options;
+    options.verification_samples = asked_for;
+    const SolveProblem problem{corner_.tracer(), target, {}, {}, tests::bake_settings(-1), {}};
+    return trace_for_verification(problem, point_lights(lights), options, {});
+  }
+  int most() const { return verification_samples({}, corner_.receivers().size()); }
+
+  PaintedCorner corner_{0.4F};
+  LightEstimates known_ = known_lights(2);
+};
+
+TEST_F(TraceForVerification, TakesTheSamplesAskedFor) {
+  EXPECT_EQ(trace(corner_.target(known_, -1), known_, 5).samples, 5);
+}
+
+TEST_F(TraceForVerification, TakesAllWhereTheLightsExplainATargetWithoutNoise) {
+  Target target = corner_.target(known_, -1);
+  target.illumination = trace(target, known_, 2 * most()).all.value;
+  target.standard_error.clear();
+  EXPECT_EQ(trace(target, known_).samples, most());
+}
+
+TEST_F(TraceForVerification, TakesFewWhereNoiseHardlyMatters) {
+  const Target exact = corner_.target(known_, -1);
+  Target noisy = exact;
+  for (float& error : noisy.standard_error) error *= 8;
+  const LightEstimates wrong{known_[1]};
+  for (const FreshTrace& traced : {trace(noisy, known_), trace(exact, wrong)}) {
+    EXPECT_LE(traced.samples, most() / 4);
+    EXPECT_GE(traced.samples, most() / 8);
+  }
+  EXPECT_LE(relative_standard_error(trace(noisy, known_).all), 0.6 * target_noise(noisy));
+}
+
+// In two parts, and as one as long: the same light within both their standard errors. Of the thousands of receivers and
+// channels 1 in 370 may be beyond three of them; standard errors are of four batches, which makes that 1 in 25.
+TEST_F(TraceForVerification, BothPartsCountByTheirSamples) {
+  Target target = corner_.target(known_, -1);
+  target.standard_error.clear();
+  target.illumination = trace(target, known_, 2 * most()).all.value;
+  const FreshTrace parts = trace(target, known_), whole = trace(target, known_, most());
+  ASSERT_EQ(parts.samples, whole.samples);
+  EXPECT_NEAR(relative_standard_error(parts.all), relative_standard_error(whole.all),
+              0.1 * relative_standard_error(whole.all));
+  std::size_t beyond = 0, all = 0;
+  for (std::size_t i = 0; i < whole.all.value.size(); ++i) {
+    const Vec3f sum = parts.of_light[0][i] + parts.of_light[1][i];
+    for (int c = 0; c < 3; ++c, ++all) {
+      const double error = std::hypot(parts.all.standard_error[i][c], whole.all.standard_error[i][c]);
+      if (std::abs(parts.all.value[i][c] - whole.all.value[i][c]) > 3 * error) ++beyond;
+      EXPECT_NEAR(sum[c], parts.all.value[i][c], 1e-4 * double(parts.all.value[i][c]));
+    }
+  }
+  EXPECT_LT(beyond, all / 25);
+}
+
+}  // namespace
+}  // namespace chiaro::inverse
