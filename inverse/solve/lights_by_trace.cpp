@@ -24,11 +24,16 @@ void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
 
 }  // namespace
 
+StageFigures verification_figures(const FreshTrace& traced) {
+  return {{"samples", double(traced.samples)}, {"relative_standard_error", relative_standard_error(traced.all)}};
+}
+
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-                           const LightEstimates& lights, StageClock& clock) {
-  LightsByTrace by_trace{lights, trace_for_verification(problem, point_lights(lights), options, control)};
-  clock.finish("verification", {{"samples", double(by_trace.traced.samples)},
-                                {"relative_standard_error", relative_standard_error(by_trace.traced.all)}});
+                           const LightEstimates& lights, StageClock& clock, std::optional<FreshTrace> first_part) {
+  const renderer::Lights all = point_lights(lights);
+  LightsByTrace by_trace{lights, first_part ? completed(problem, all, std::move(*first_part), options, control)
+                                            : trace_for_verification(problem, all, options, control)};
+  clock.finish("verification", verification_figures(by_trace.traced));
   return by_trace;
 }
 

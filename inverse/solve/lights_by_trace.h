@@ -16,9 +16,11 @@ struct LightsByTrace {
   double settling_seconds = 0;                // without the traces
 };
 
-// As they are.
+StageFigures verification_figures(const FreshTrace& traced);
+
+// As they are. first_part: of these lights, where it is there already.
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-                           const LightEstimates& lights, StageClock& clock);
+                           const LightEstimates& lights, StageClock& clock, std::optional<FreshTrace> first_part = {});
 
 // Where they are, with the intensities that come closest to the target by this trace, within the problem's rules: of
 // lights that do not explain the target, or that rules tie together.

@@ -13,7 +13,6 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood
-constexpr double kNothingElse = 1.4;    // times the noise of the target, or less
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
@@ -195,7 +194,6 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
                                      : "no further light explains more",
           found.cut,
           found.error_curve,
-          explained && found.error <= kNothingElse * found.noise,
           !found.out_of_time && (far || tied),
           !found.out_of_time && !far && !tied,
           held};

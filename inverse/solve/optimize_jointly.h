@@ -17,10 +17,9 @@ struct Optimum {
   std::string termination;
   std::vector<int> cut;  // of the light tree, nodes
   std::vector<LightSet> error_curve{};
-  bool explained = false;  // nothing but the target's noise is left
-  bool refits = false;     // the lights do not explain the target, or are tied together: their intensities come last
-  bool settles = false;    // the lights explain the target, or nearly so, and each may move by itself …
-  std::size_t held = 0;    // … but for so many of the first
+  bool refits = false;   // the lights do not explain the target, or are tied together: their intensities come last
+  bool settles = false;  // the lights explain the target, or nearly so, and each may move by itself …
+  std::size_t held = 0;  // … but for so many of the first
 };
 
 // What is known before the search.

@@ -12,7 +12,6 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr int kRounds = 3, kDrafts = 5;
-constexpr int kDraft = 8;             // a part of all paths, while the lights still go farther
 constexpr double kLeastPaths = 2e6;   // of all receivers together …
 constexpr int kEnoughSamples = 256;   // … or so many per receiver
 constexpr std::size_t kMany = 30000;  // receivers at most
@@ -187,22 +186,35 @@ void come_to_rest(const AllowedPlaces& places, const LightEstimates& earlier, co
   }
 }
 
-// Towards where they will settle, by traces of fewer paths, until they hardly move. None goes.
-void approach(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-              const Settling& with, LightEstimates& lights) {
-  const int samples = std::max(1, verification_samples(options, problem.target.receivers.size()) / kDraft);
+struct Approach {
+  std::optional<FreshTrace> first_part{};  // of the trace where the lights are in the end; absent: they moved since
+  double seconds = 0;                      // without the traces
+};
+
+// Towards where they will settle, by first parts of traces, until they would hardly move. None goes.
+Approach approach(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                  const Settling& with, LightEstimates& lights, StageClock& clock) {
+  Approach done;
   LightEstimates earlier, before;
   for (int draft = 0; draft < kDrafts; ++draft) {
-    const FreshTrace traced = trace_afresh(problem, point_lights(lights), samples, options, control);
+    FreshTrace traced = trace_first_part(problem, point_lights(lights), options, control);
+    clock.finish("verification", verification_figures(traced));
     FreeLights free = free_lights(with, lights, traced);
     const Bench bench{with.some.response(), wanted_of(with, free, traced)};
-    if (any_hidden(bench, free)) return;
-    bench.descend(free);
-    earlier = std::exchange(before, lights);
-    lights = joined(with, lights, free);
-    come_to_rest(with.some.response().places(), earlier, before, lights);
-    if (at_rest(bench, free, with.near)) return;
+    const bool hidden = any_hidden(bench, free);
+    if (!hidden) bench.descend(free);
+    const bool rests = hidden || at_rest(bench, free, with.near);
+    if (!rests) {
+      earlier = std::exchange(before, lights);
+      lights = joined(with, lights, free);
+      come_to_rest(with.some.response().places(), earlier, before, lights);
+    }
+    done.seconds += clock.finish("approach", {{"at_rest", rests ? 1 : 0}});
+    if (!rests) continue;
+    done.first_part = std::move(traced);
+    break;
   }
+  return done;
 }
 
 }  // namespace
@@ -224,11 +236,13 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
                       options.exact_lights == 0,
                       kNear * double(search.grid().region.diagonal())};
   const auto out_of_time = [&] { return options.time_limit > 0 && clock.total() > options.time_limit; };
-  if (!found.explained && !any_share_a_place(lights, with.near) && !out_of_time())
-    approach(problem, options, control, with, lights);
-  double seconds = clock.finish("approach", {});
+  Approach approached;
+  if (!any_share_a_place(lights, with.near) && !out_of_time())
+    approached = approach(problem, options, control, with, lights, clock);
+  double seconds = approached.seconds;
   for (int round = 1;; ++round) {
-    LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
+    LightsByTrace by_trace =
+        trace_lights(problem, options, control, lights, clock, std::exchange(approached.first_part, std::nullopt));
     by_trace.settling_seconds = seconds;
     if (any_share_a_place(lights, with.near)) return by_trace;
     FreeLights free = free_lights(with, lights, by_trace.traced);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
-constexpr int kFirstPart = 8;               // of the samples: tells how many it takes
+constexpr int kFirstPart = 8;               // of the samples
 constexpr double kNoiseBesideTarget = 0.5;  // of the target's: adds an eighth to it
 constexpr double kNoiseBesideError = 0.1;   // of what the lights leave unexplained
 
@@ -23,8 +23,8 @@ bool has_fixed_light(const SolveProblem& problem) {
                      [](const renderer::Material& m) { return max_component(m.emission) > 0; });
 }
 
-FreshTrace traced_with_seed(const SolveProblem& problem, const renderer::Lights& lights, int samples,
-                            std::uint64_t seed, const renderer::Control& control) {
+FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples, std::uint64_t seed,
+                        const renderer::Control& control) {
   renderer::Lights all = lights;
   all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
   const renderer::TraceOptions trace{samples, problem.bake.bounces, seed, true};
@@ -76,19 +76,25 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
   return std::clamp(int(kVerificationPaths / double(receivers)), kLeastVerificationSamples, kMostVerificationSamples);
 }
 
-FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples,
-                        const SolveOptions& options, const renderer::Control& control) {
-  return traced_with_seed(problem, lights, samples, fresh_seed(options.seed, 2), control);
+FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                            const renderer::Control& control) {
+  const int all = verification_samples(options, problem.target.receivers.size());
+  const int first = std::min(all, std::max(kLeastVerificationSamples, all / kFirstPart));
+  return trace_afresh(problem, lights, first, fresh_seed(options.seed, 2), control);
+}
+
+FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
+                     const SolveOptions& options, const renderer::Control& control) {
+  const int most = verification_samples(options, problem.target.receivers.size());
+  const double needed = options.verification_samples > 0 ? most : std::ceil(samples_needed(problem, first));
+  const int more = int(std::min(needed, double(most))) - first.samples;
+  if (more <= 0) return first;
+  return joined(std::move(first), trace_afresh(problem, lights, more, fresh_seed(options.seed, 4), control));
 }
 
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
                                   const SolveOptions& options, const renderer::Control& control) {
-  const int most = verification_samples(options, problem.target.receivers.size());
-  const int first = options.verification_samples > 0 ? most : std::max(kLeastVerificationSamples, most / kFirstPart);
-  FreshTrace traced = trace_afresh(problem, lights, first, options, control);
-  const int more = int(std::min(std::ceil(samples_needed(problem, traced)), double(most))) - traced.samples;
-  if (more <= 0) return traced;
-  return joined(std::move(traced), traced_with_seed(problem, lights, more, fresh_seed(options.seed, 4), control));
+  return completed(problem, lights, trace_first_part(problem, lights, options, control), options, control);
 }
 
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {

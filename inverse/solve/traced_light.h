@@ -25,13 +25,16 @@ struct FreshTrace {
   std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
   int samples = 0;                           // paths per receiver
 };
-FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples,
-                        const SolveOptions& options, const renderer::Control& control);
 
 // With as many samples as were asked for; or else with as many as it takes until its noise hardly adds to that of the
 // target, or to what the lights leave unexplained, and no more than verification_samples().
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
                                   const SolveOptions& options, const renderer::Control& control);
+// The same in two: an eighth of the samples, by which one may decide against the lights, and then the others.
+FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
+                            const renderer::Control& control);
+FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
+                     const SolveOptions& options, const renderer::Control& control);
 
 // Fills in how far the lights of the result are from the target.
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result);
