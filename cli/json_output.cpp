@@ -59,6 +59,8 @@ Json::Json(float v) : value(std::isfinite(v) ? std::strtod(fmt::format("{}", v).
 
 Json::Json(renderer::Vec3f v) : value(JsonList{v.x, v.y, v.z}) {}
 
+std::string valid_utf8(const std::string& text) { return nlohmann::json::parse(quoted(text)).get<std::string>(); }
+
 JsonList json_list(const std::vector<std::string>& texts) { return {texts.begin(), texts.end()}; }
 
 std::string json_text(const Json& json) { return text_of(json, 0) + "\n"; }

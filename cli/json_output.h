@@ -33,6 +33,9 @@ struct Json {
   Json(renderer::Vec3f v);
 };
 
+// With the replacement character in place of bytes that are no UTF-8.
+std::string valid_utf8(const std::string& text);
+
 JsonList json_list(const std::vector<std::string>& texts);
 
 // Two spaces a level; lists of numbers on one line; a line end at the end.

@@ -9,15 +9,18 @@
 
 #include <fmt/format.h>
 
+#include "cli/json_output.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
 
 std::string aligned_rows(const std::vector<TextRow>& rows) {
   std::size_t width = 0;
-  for (const auto& [name, value] : rows) width = std::max(width, name.size());
+  for (const auto& [name, value] : rows) width = std::max(width, one_line(name).size());
   std::string text;
-  for (const auto& [name, value] : rows) text += fmt::format("  {:{}}  {}\n", name, width, value);
+  for (const auto& [name, value] : rows) {
+    text += fmt::format("  {:{}}  {}\n", one_line(name), width, one_line(value));
+  }
   return text;
 }
 
@@ -25,13 +28,14 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], one_line(row[c]).size());
   }
   std::string text;
   for (const auto& row : rows) {
     text += "  ";
     for (std::size_t c = 0; c < row.size(); ++c) {
-      text += c == 0 ? fmt::format("{:<{}}", row[c], widths[c]) : fmt::format("  {:>{}}", row[c], widths[c]);
+      const std::string cell = one_line(row[c]);
+      text += c == 0 ? fmt::format("{:<{}}", cell, widths[c]) : fmt::format("  {:>{}}", cell, widths[c]);
     }
     text += "\n";
   }
@@ -57,7 +61,7 @@ std::string text_of_bytes(double bytes) {
 }
 
 std::string one_line(const std::string& text) {
-  std::string line = text;
+  std::string line = valid_utf8(text);
   std::replace_if(
       line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
   while (!line.empty() && line.back() == ' ') line.pop_back();

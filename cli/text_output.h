@@ -22,7 +22,8 @@ std::string text_of_seconds(double seconds);    // "0.31 s", "4 min 05 s"
 std::string text_of_percent(double fraction);   // "4.12 %"
 std::string text_of_bytes(double bytes);        // "1.2 GB"
 
-// The same in one line: line ends and other control characters become spaces.
+// The same in one line, as terminals and programs can take it, whatever names of files are in it: line ends and other
+// control characters become spaces, bytes that are no UTF-8 the replacement character.
 std::string one_line(const std::string& text);
 
 // Error when standard output does not take it.

@@ -18,6 +18,8 @@ using Eigen::Vector3d;
 constexpr std::size_t kHeldOut = 1500;  // receivers that tell how many lights there are
 constexpr double kCloseEnough = 0.01;   // error, whatever the noise
 constexpr double kMatters = 0.05;       // of the target's norm: a light that a larger region is for
+constexpr std::size_t kCrowd = 3;       // so many of them at the border may stand for fewer beyond it
+constexpr double kAsClose = 1.1;        // of an error, or less: fewer lights are better
 constexpr float kGrowth = 0.5F;         // of the region's longest side
 constexpr double kClearlyBetter = 0.9;  // of an error, or less
 
@@ -63,18 +65,25 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
 
 bool is_joint(const SearchBasis& basis) { return basis.options.method == SolveMethod::kJoint; }
 
-// The faces of the region that one of the lights is at, moved outwards.
-std::optional<Box3f> grown_at(const Box3f& region, const std::vector<Vector3d>& lights) {
+// The faces of a region that one of the lights is at, moved outwards.
+struct Growth {
+  Box3f region;
+  std::size_t lights_at_border = 0;
+};
+
+Growth grown_at(const Box3f& region, const std::vector<Vector3d>& lights) {
   const float near = float(kAtBorder) * region.diagonal(), by = kGrowth * max_component(region.extent());
-  Box3f grown = region;
+  Growth growth{region};
   for (const Vector3d& light : lights) {
     const Vec3f at = to_vec3f(light);
+    bool at_border = false;
     for (int a = 0; a < 3; ++a) {
-      if (at[a] - region.min[a] <= near) grown.min[a] = region.min[a] - by;
-      if (region.max[a] - at[a] <= near) grown.max[a] = region.max[a] + by;
+      if (at[a] - region.min[a] <= near) growth.region.min[a] = region.min[a] - by, at_border = true;
+      if (region.max[a] - at[a] <= near) growth.region.max[a] = region.max[a] + by, at_border = true;
     }
+    growth.lights_at_border += at_border ? 1 : 0;
   }
-  return grown.min == region.min && grown.max == region.max ? std::nullopt : std::optional(grown);
+  return growth;
 }
 
 SolveProblem with_region(SolveProblem problem, const std::optional<Box3f>& region) {
@@ -136,18 +145,24 @@ JointSearch RegionSearch::joint_search() const {
 std::optional<Box3f> RegionSearch::wider_region() const {
   const bool may_grow =
       basis.region_may_grow && is_joint(basis) && !found_.out_of_time && found_.beside_surfaces.empty();
-  if (!may_grow || is_explained(found_) || found_.error < kCloseEnough) return std::nullopt;
+  if (!may_grow) return std::nullopt;
   const std::vector<Column> columns = evaluate_columns(response, found_.others, Evaluation::kTracedVisibility);
   std::vector<Vector3d> lights;
   for (std::size_t j = 0; j < columns.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], found_.others[j].intensity);
     if (norm > kMatters * judged.target_norm) lights.push_back(found_.others[j].position);
   }
-  return grown_at(transport.cache.grid.region, lights);
+  const Growth growth = grown_at(transport.cache.grid.region, lights);
+  const bool close = is_explained(found_) || found_.error < kCloseEnough;
+  if (growth.lights_at_border < (close ? kCrowd : 1)) return std::nullopt;
+  return growth.region;
 }
 
 bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
-  return found_.beside_surfaces.empty() && found_.error < kClearlyBetter * other.found_.error;
+  if (!found_.beside_surfaces.empty()) return false;
+  const bool fewer = found_.others.size() < other.found_.others.size();
+  return found_.error < kClearlyBetter * other.found_.error ||
+         (fewer && found_.error < std::max(kCloseEnough, kAsClose * other.found_.error));
 }
 
 Optimum RegionSearch::conclude(StageClock& clock) const {

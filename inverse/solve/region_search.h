@@ -28,9 +28,10 @@ class RegionSearch {
   RegionSearch(const RegionSearch&) = delete;
   RegionSearch& operator=(const RegionSearch&) = delete;
 
-  // Where a larger region may hold better lights: those found press against its border, and do not explain the target.
+  // Where a larger region may hold better lights: those found press against its border, and do not explain the target
+  // or take a crowd of them to.
   std::optional<Box3f> wider_region() const;
-  // Of two searches, the one that came closer.
+  // Of two searches, the one that came closer, or as close with fewer lights.
   bool is_clearly_better_than(const RegionSearch& other) const;
 
   // The lights that are left. Once, at last.

@@ -29,6 +29,12 @@ TEST(CliTextOutput, BytesHaveDecimalUnits) {
 
 TEST(CliTextOutput, OneLineIsOneLine) { EXPECT_EQ(one_line("a\nb\tc\r\n"), "a b c"); }
 
+// Names in files are whatever somebody wrote there.
+TEST(CliTextOutput, NamesCannotSpeakToTheTerminal) {
+  EXPECT_EQ(one_line("lamp\x1b[31m \xc5\xff \xc3\xbc"), "lamp [31m \xef\xbf\xbd\xef\xbf\xbd \xc3\xbc");
+  EXPECT_EQ(aligned_rows({{"light", "a\x1b[2J\nb"}}), "  light  a [2J b\n");
+}
+
 TEST(CliProgress, LineShowsStageAndPercent) {
   EXPECT_EQ(progress_line("bake", 0.5, 0, 80), "bake [############............]  50 %");
 }

@@ -238,6 +238,18 @@ TEST(Solve, FindsLightsOutsideTheBoundsOfAnOpenScene) {
   }
 }
 
+// Many lights at the border of a region close to a floor do nearly what one does far above it.
+TEST(Solve, OneLightBeyondIsBetterThanManyAtTheBorder) {
+  const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
+  const LightEstimates known{{{1, 7, -2}, {300, 200, 100}}};
+  const Target target = open.target(known, 0);
+  SolveOptions options = quick();
+  options.max_lights = 10;
+  const SolveResult result = solve(problem_of(open, target, 0), options);
+  ASSERT_EQ(result.lights.size(), 1U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 1e-3 * open.diagonal());
+}
+
 TEST(Solve, UnweightedReceiversDoNotMatter) {
   // Nonsense painted where nobody cares.
   const PaintedCorner corner;
