@@ -1,6 +1,7 @@
 #include "inverse/solve/exact_indirect.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "inverse/transport/eigen_vectors.h"
@@ -11,12 +12,41 @@ namespace {
 constexpr int kSamplesFactor = 4;                    // gather rays per receiver, over those of the bake
 constexpr int kPointsPerSample = 16;                 // gather points over rays
 constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …
-constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver
+constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver, at most …
+constexpr int kFirstPart = 8;                        // … of which this part tells how many it takes …
+constexpr double kNoiseBesideTarget = 0.3;           // … to so much of the target's noise
 
 // Makes this the light's indirect illumination of the receivers, where it stands now.
 void set_correction(const LightResponse& response, LightEstimate& light, const std::vector<Vec3f>& indirect) {
   light.correction = column_of(indirect) - response.interpolated_indirect(light.position);
   light.corrected_at = light.position;
+}
+
+renderer::PointLight unity_light(const Eigen::Vector3d& position) {
+  renderer::PointLight unity;
+  unity.position = to_vec3f(position);
+  unity.intensity = {1, 1, 1};
+  return unity;
+}
+
+int paths_of_each(std::size_t paths, std::size_t receivers) {
+  return std::clamp(int(paths / receivers), kLeastPaths, kMostPaths);
+}
+
+std::vector<std::size_t> all_of(std::size_t count) {
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+// What some receivers get of a unity light by bounces alone.
+std::vector<Vec3f> without_direct(const LightResponse& response, const std::vector<std::size_t>& receivers,
+                                  const Eigen::Vector3d& position, std::vector<Vec3f> traced) {
+  const Column direct = response.direct(position);
+  for (std::size_t k = 0; k < receivers.size(); ++k) {
+    for (int c = 0; c < 3; ++c) traced[k][c] -= float(direct(Eigen::Index(receivers[k]), c));
+  }
+  return traced;
 }
 
 GatherOptions gather_options(const BakeSettings& settings) {
@@ -47,30 +77,41 @@ void ExactIndirect::correct(const LightResponse& response, LightEstimates& light
   for (std::size_t k = 0; k < moved.size(); ++k) set_correction(response, lights[moved[k]], exact[k]);
 }
 
-void ExactIndirect::correct_by_paths(const LightResponse& response, LightEstimates& lights) const {
-  std::vector<std::size_t> all(response.receiver_count());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples);
+void ExactIndirect::correct_by_paths(const LightResponse& response, const Observations& observations,
+                                     LightEstimates& lights) const {
+  const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples) / lights.size();
   for (LightEstimate& light : lights) {
-    set_correction(response, light, traced(response, all, light.position, paths / lights.size()));
+    const int most = paths_of_each(paths, response.receiver_count());
+    const std::vector<Vec3f> traced = traced_so_well(response, observations, light, most).value;
+    set_correction(response, light,
+                   without_direct(response, all_of(response.receiver_count()), light.position, traced));
   }
+}
+
+renderer::Illumination ExactIndirect::traced_so_well(const LightResponse& response, const Observations& observations,
+                                                     const LightEstimate& light, int most) const {
+  const auto trace = [&](int samples, std::uint64_t seed) {
+    return trace_illumination(tracer_, response.receivers(), {unity_light(light.position)},
+                              {samples, settings_.bounces, seed, false});
+  };
+  const int first = std::max(kLeastPaths, most / kFirstPart);
+  renderer::Illumination traced = trace(first, settings_.seed);
+  const Column error = column_of(traced.standard_error) * light.intensity.matrix().asDiagonal();
+  const double noise = (observations.sqrt_weight.asDiagonal() * error).norm() / observations.target_norm;
+  const double may_be = kNoiseBesideTarget * observations.noise;
+  const double needed = may_be > 0 ? std::ceil(first * std::pow(noise / may_be, 2)) : most;
+  const int more = int(std::min(needed, double(most))) - first;
+  return more > 0 ? joined(std::move(traced), first, trace(more, settings_.seed + 1), more) : traced;
 }
 
 std::vector<Vec3f> ExactIndirect::traced(const LightResponse& response, const std::vector<std::size_t>& receivers,
                                          const Eigen::Vector3d& position, std::size_t paths) const {
-  renderer::PointLight unity;
-  unity.position = to_vec3f(position);
-  unity.intensity = {1, 1, 1};
   std::vector<renderer::SurfaceSample> samples;
   for (const std::size_t i : receivers) samples.push_back(response.receivers()[i]);
-  const int each = std::clamp(int(paths / samples.size()), kLeastPaths, kMostPaths);
-  std::vector<Vec3f> indirect =
-      trace_illumination(tracer_, samples, {unity}, {each, settings_.bounces, settings_.seed, false}).value;
-  const Column direct = response.direct(position);
-  for (std::size_t k = 0; k < receivers.size(); ++k) {
-    for (int c = 0; c < 3; ++c) indirect[k][c] -= float(direct(Eigen::Index(receivers[k]), c));
-  }
-  return indirect;
+  const auto traced =
+      trace_illumination(tracer_, samples, {unity_light(position)},
+                         {paths_of_each(paths, samples.size()), settings_.bounces, settings_.seed, false});
+  return without_direct(response, receivers, position, traced.value);
 }
 
 }  // namespace chiaro::inverse

@@ -16,8 +16,8 @@ class ExactIndirect {
   // no farther than `near` (metres) it keeps that.
   void correct(const LightResponse& response, LightEstimates& lights, double near = 0) const;
   // The same by path tracing: slower and noisier, but right where gather points are too far apart, and for materials
-  // that are not Lambertian.
-  void correct_by_paths(const LightResponse& response, LightEstimates& lights) const;
+  // that are not Lambertian. By as many paths as it takes until their noise hardly adds to that of the target.
+  void correct_by_paths(const LightResponse& response, const Observations& observations, LightEstimates& lights) const;
   // Indirect illumination of some of the receivers under a unity light, by this many paths.
   std::vector<Vec3f> traced(const LightResponse& response, const std::vector<std::size_t>& receivers,
                             const Eigen::Vector3d& position, std::size_t paths) const;
@@ -27,6 +27,9 @@ class ExactIndirect {
   const BakeSettings& settings() const { return settings_; }
 
  private:
+  renderer::Illumination traced_so_well(const LightResponse& response, const Observations& observations,
+                                        const LightEstimate& light, int most) const;
+
   const renderer::RayTracer& tracer_;
   BakeSettings settings_;
   GatherOperator gather_;

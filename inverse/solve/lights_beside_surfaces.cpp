@@ -12,7 +12,8 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kFew = 0.02;         // so small a part of the receivers holds nearly all that is left …
-constexpr double kMustExplain = 0.5;  // … and one light must explain this much of it (squared norm)
+constexpr double kMustExplain = 0.5;  // … and one light must explain this much of it (squared norm) …
+constexpr double kMayExplain = 0.25;  // … if it explains so much before its indirect light is traced
 constexpr double kRest = 1e-4;        // of the energy, that the brightest receivers may miss
 constexpr std::size_t kMostBrightest = kLightBlock;
 constexpr float kFarthest = 0.02F;   // … from this part of the region's diagonal …
@@ -193,7 +194,8 @@ LightEstimates find_lights_beside_surfaces(const LightResponse& response, const 
     const Eigen::VectorXd energy = squared_residuals(left);
     if (!held_by_few(energy, left.stands_for)) break;
     LightEstimates one{SingleLight(response, exact, left).find()};
-    exact.correct_by_paths(response, one);
+    if (squared_residuals(less(left, response, one)).sum() > (1 - kMayExplain) * energy.sum()) break;
+    exact.correct_by_paths(response, left, one);
     left = less(std::move(left), response, one);
     if (squared_residuals(left).sum() > (1 - kMustExplain) * energy.sum()) break;
     found.push_back(one.front());
@@ -212,7 +214,7 @@ LightEstimates refine_lights_beside_surfaces(const LightResponse& response, cons
     const Observations alone = less(left, response, rest);
     if (!anything_wanted(alone)) continue;
     LightEstimates one{SingleLight(response, exact, alone).find_near(lights[j].position)};
-    exact.correct_by_paths(response, one);
+    exact.correct_by_paths(response, alone, one);
     refined[j] = one.front();
   }
   return refined;

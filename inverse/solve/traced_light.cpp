@@ -13,7 +13,7 @@ namespace {
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
 constexpr int kFirstPart = 8;               // of the samples
-constexpr double kNoiseBesideTarget = 0.5;  // of the target's: adds an eighth to it
+constexpr double kNoiseBesideTarget = 0.7;  // of the target's: adds a fifth to it
 constexpr double kNoiseBesideError = 0.1;   // of what the lights leave unexplained
 
 bool has_fixed_light(const SolveProblem& problem) {
@@ -35,16 +35,13 @@ FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lig
 
 // Both together, as of all their samples.
 FreshTrace joined(FreshTrace first, const FreshTrace& second) {
-  const float b = float(second.samples) / float(first.samples + second.samples), a = 1 - b;
-  const auto average = [&](std::vector<Vec3f>& of_first, const std::vector<Vec3f>& of_second) {
-    for (std::size_t i = 0; i < of_first.size(); ++i) of_first[i] = a * of_first[i] + b * of_second[i];
-  };
-  average(first.all.value, second.all.value);
-  for (std::size_t l = 0; l < first.of_light.size(); ++l) average(first.of_light[l], second.of_light[l]);
-  for (std::size_t i = 0; i < first.all.standard_error.size(); ++i) {
-    Vec3f& error = first.all.standard_error[i];
-    for (int c = 0; c < 3; ++c) error[c] = std::hypot(a * error[c], b * second.all.standard_error[i][c]);
+  const float b = float(second.samples) / float(first.samples + second.samples);
+  for (std::size_t l = 0; l < first.of_light.size(); ++l) {
+    for (std::size_t i = 0; i < first.of_light[l].size(); ++i) {
+      first.of_light[l][i] = (1 - b) * first.of_light[l][i] + b * second.of_light[l][i];
+    }
   }
+  first.all = joined(std::move(first.all), first.samples, second.all, second.samples);
   first.samples += second.samples;
   return first;
 }

@@ -129,6 +129,16 @@ IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::sp
   return result;
 }
 
+Illumination joined(Illumination first, int first_samples, const Illumination& second, int second_samples) {
+  const float b = float(second_samples) / float(first_samples + second_samples), a = 1 - b;
+  for (std::size_t i = 0; i < first.value.size(); ++i) {
+    first.value[i] = a * first.value[i] + b * second.value[i];
+    Vec3f& error = first.standard_error[i];
+    for (int c = 0; c < 3; ++c) error[c] = std::hypot(a * error[c], b * second.standard_error[i][c]);
+  }
+  return first;
+}
+
 double relative_standard_error(const Illumination& illumination) {
   double error = 0, value = 0;
   for (std::size_t i = 0; i < illumination.value.size(); ++i) {

@@ -37,6 +37,9 @@ IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::sp
                                                 const Lights& lights, const TraceOptions& options,
                                                 const Control& control = {});
 
+// Two independent traces of the same points together, of so many samples each.
+Illumination joined(Illumination first, int first_samples, const Illumination& second, int second_samples);
+
 // sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give.
 double relative_standard_error(const Illumination& illumination);
 
