@@ -12,8 +12,9 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr std::uint32_t kMagic = 20000630, kMultipart = 1U << 12;
-constexpr std::uint64_t kMostPixelsOfTile = 1U << 24, kMostPixelsOfLine = 1U << 20;  // libraries take memory for one
+constexpr std::uint32_t kMagic = 20000630, kTiled = 1U << 9, kMultipart = 1U << 12;
+// Libraries take memory for a tile, or for as many lines as are compressed together.
+constexpr std::uint64_t kMostPixelsOfTile = 1U << 24, kMostPixelsOfLine = 1U << 20, kMostPixelsOfLines = 1U << 26;
 
 // 0 where the stream ends, which it then says.
 std::uint32_t read_number(std::istream& stream) {
@@ -64,12 +65,27 @@ bool has_its_size(std::istream& stream, const std::string& type, std::uint32_t s
 }
 
 struct Header {
-  std::uint64_t line = 0, tile = 0;  // pixels; tile 0: there are none
+  std::optional<bool> tiled{};       // or in lines, whatever it says of tiles; absent: its type is not given
+  std::uint64_t line = 0, tile = 0;  // pixels
+  std::uint64_t lines = 16;          // that are compressed together; where it is not said, as by ZIP
 };
+
+// By the number of a compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB; the most of what comes
+// later.
+std::uint64_t lines_together(std::size_t compression) {
+  constexpr std::array<std::uint64_t, 10> kLines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  return kLines[std::min(compression, kLines.size() - 1)];
+}
 
 // Values of an attribute that say how much is read at once.
 void read_value(std::istream& stream, const std::string& name, std::uint32_t size, Header& header) {
   const auto end = stream.tellg() + std::streamoff(size);
+  if (name == "type") {
+    std::string kind(std::min<std::uint32_t>(size, 16), 0);
+    stream.read(kind.data(), std::streamsize(kind.size()));
+    header.tiled = kind == "tiledimage" || kind == "deeptile";
+  }
+  if (name == "compression" && size >= 1) header.lines = lines_together(std::size_t(stream.get()));
   if (name == "tiles" && size >= 8) {
     const std::uint64_t width = read_number(stream), height = read_number(stream);
     header.tile = width * std::min<std::uint64_t>(height, kMostPixelsOfTile + 1);
@@ -82,22 +98,26 @@ void read_value(std::istream& stream, const std::string& name, std::uint32_t siz
   stream.seekg(end);
 }
 
-std::optional<std::string> oversized(const Header& header) {
-  if (header.tile > kMostPixelsOfTile) return fmt::format("its header is corrupt: tiles of {} pixels", header.tile);
-  if (header.tile == 0 && header.line > kMostPixelsOfLine) {
-    return fmt::format("its header is corrupt: lines of {} pixels", header.line);
+// file_is_tiled: as the file itself says. Where that and the header differ readers may believe either.
+std::optional<std::string> oversized(const Header& header, std::optional<bool> file_is_tiled) {
+  const bool by_type = header.tiled.value_or(file_is_tiled.value_or(false)), by_file = file_is_tiled.value_or(by_type);
+  if ((by_type || by_file) && header.tile > kMostPixelsOfTile) {
+    return fmt::format("its header is corrupt: tiles of {} pixels", header.tile);
   }
-  return std::nullopt;
+  if (by_type && by_file) return std::nullopt;
+  if (header.line <= kMostPixelsOfLine && header.line * header.lines <= kMostPixelsOfLines) return std::nullopt;
+  return fmt::format("its header is corrupt: lines of {} pixels, {} at once", header.line, header.lines);
 }
 
 // Passes the attributes of one part; whether there were any.
-bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<std::string>& damage) {
+bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<bool> file_is_tiled,
+                 std::optional<std::string>& damage) {
   Header header;
   bool any = false;
   while (true) {
     const std::optional<std::string> name = read_name(stream);
     if (name && name->empty()) {
-      damage = oversized(header);
+      damage = oversized(header, file_is_tiled);
       return any;
     }
     const std::optional<std::string> type = name ? read_name(stream) : std::nullopt;
@@ -120,10 +140,12 @@ std::optional<std::string> find_exr_header_damage(const std::filesystem::path& p
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);
   if (!stream || no_size || read_number(stream) != kMagic) return std::nullopt;
-  const bool multipart = (read_number(stream) & kMultipart) != 0;
+  const std::uint32_t version = read_number(stream);
+  const bool multipart = (version & kMultipart) != 0;
+  const auto file_is_tiled = multipart ? std::nullopt : std::optional((version & kTiled) != 0);
   std::optional<std::string> damage;
-  bool more = pass_header(stream, size, damage);
-  while (!damage && multipart && more) more = pass_header(stream, size, damage);
+  bool more = pass_header(stream, size, file_is_tiled, damage);
+  while (!damage && multipart && more) more = pass_header(stream, size, file_is_tiled, damage);
   return damage;
 }
 

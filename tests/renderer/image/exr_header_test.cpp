@@ -68,14 +68,31 @@ TEST(ExrHeader, TilesAndLinesBeyondAllMeasureAreRefused) {
   const auto tiles = [](std::uint32_t width, std::uint32_t height) {
     return std::string("tiles") + '\0' + "tiledesc" + '\0' + number(9) + number(width) + number(height) + '\0';
   };
-  const auto damage = [](const std::string& attributes) {
-    return damage_of(header(2, attributes + '\0')).value_or("nothing");
+  const auto typed = [](const std::string& type) {
+    return std::string("type") + '\0' + "string" + '\0' + number(std::uint32_t(type.size())) + type;
   };
-  EXPECT_NE(damage(window(1U << 30)).find("lines of"), std::string::npos);
-  EXPECT_NE(damage(tiles(1U << 20, 1U << 20)).find("tiles of"), std::string::npos);
-  EXPECT_NE(damage(tiles(0xFFFFFFFF, 0xFFFFFFFF)).find("tiles of"), std::string::npos);
-  EXPECT_EQ(damage(window(1U << 30) + tiles(1, 1024)), "nothing");
-  EXPECT_EQ(damage(window(4095)), "nothing");
+  const auto compressed = [](char how) {
+    return std::string("compression") + '\0' + "compression" + '\0' + number(1) + how;
+  };
+  constexpr std::uint32_t kLines = 2, kTiled = 2 | 0x200, kMultipart = 2 | 0x1000;
+  const auto damage = [](std::uint32_t version, const std::string& attributes) {
+    return damage_of(header(version, attributes + '\0' + '\0')).value_or("nothing");
+  };
+  for (const std::string& wide : {window(1U << 30), window(1U << 30) + tiles(1, 1024),
+                                  window((1U << 20) - 1) + compressed(9), window((1U << 20) - 1) + compressed(77)}) {
+    EXPECT_NE(damage(kLines, wide).find("lines of"), std::string::npos);
+    EXPECT_NE(damage(kTiled, typed("scanlineimage") + wide).find("lines of"), std::string::npos);
+    EXPECT_NE(damage(kMultipart, wide).find("lines of"), std::string::npos);
+  }
+  for (const std::string& large : {tiles(1U << 20, 1U << 20), tiles(0xFFFFFFFF, 0xFFFFFFFF)}) {
+    EXPECT_NE(damage(kTiled, large).find("tiles of"), std::string::npos);
+    EXPECT_NE(damage(kLines, typed("tiledimage") + large).find("tiles of"), std::string::npos);
+    EXPECT_NE(damage(kMultipart, typed("tiledimage") + large).find("tiles of"), std::string::npos);
+  }
+  EXPECT_EQ(damage(kTiled, window(1U << 30) + tiles(1, 1024)), "nothing");
+  EXPECT_EQ(damage(kMultipart, typed("tiledimage") + window(1U << 30) + tiles(1, 1024)), "nothing");
+  EXPECT_EQ(damage(kLines, window(4095) + compressed(9)), "nothing");
+  EXPECT_EQ(damage(kLines, window((1U << 20) - 1) + compressed(3)), "nothing");
 }
 
 // Readers take them at their own length, and would find another header than the one that was looked at.
