@@ -13,17 +13,14 @@ import pathlib
 import random
 import struct
 import subprocess
-import sys
 import threading
 import time
+
+from stress import Failure, run_tool
 
 BEFORE = b"what was here before\n"
 STROKES = {"base": "black", "strokes": [{"mode": "add", "color": [1, 1, 1], "radius": 0.5, "path": [[0, 0, 0]]}] * 50}
 LIGHTS = {"lights": [{"position": [0.3 * (i % 3 - 1), 1, 0.2], "intensity": [1, 1, 1]} for i in range(3000)]}
-
-
-class Failure(Exception):
-    pass
 
 
 def textured_floor(folder, quads=60):
@@ -158,15 +155,4 @@ class ChangingFiles:
             time.sleep(self.random.choice((0, 0.001, 0.02)))
 
 
-def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    runs = int(sys.argv[3]) if len(sys.argv) > 3 else 100
-    seed = int(sys.argv[4]) if len(sys.argv) > 4 else 0
-    try:
-        ChangingFiles(*sys.argv[1:3], runs, seed).run()
-    except Failure as failure:
-        sys.exit(f"FAILED: {failure}")
-
-
-main()
+run_tool(__doc__, ChangingFiles, 2)

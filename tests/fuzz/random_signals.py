@@ -14,16 +14,13 @@ import pathlib
 import random
 import signal
 import subprocess
-import sys
 import time
+
+from stress import Failure, run_tool
 
 BEFORE = b"what was here before\n"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 STROKES = {"base": "black", "strokes": [{"mode": "add", "color": [1, 1, 1], "radius": 0.5, "path": [[0, 0, 0]]}]}
-
-
-class Failure(Exception):
-    pass
 
 
 def expect(truth, what):
@@ -156,15 +153,4 @@ class Signals:
             (self.folder / path).unlink(missing_ok=True)
 
 
-def main():
-    if len(sys.argv) < 4:
-        sys.exit(__doc__)
-    runs = int(sys.argv[4]) if len(sys.argv) > 4 else 100
-    seed = int(sys.argv[5]) if len(sys.argv) > 5 else 0
-    try:
-        Signals(*sys.argv[1:4], runs, seed).run()
-    except Failure as failure:
-        sys.exit(f"FAILED: {failure}")
-
-
-main()
+run_tool(__doc__, Signals, 3)
