@@ -15,27 +15,31 @@
 namespace chiaro::cli {
 
 std::string aligned_rows(const std::vector<TextRow>& rows) {
+  std::vector<TextRow> lines;
   std::size_t width = 0;
-  for (const auto& [name, value] : rows) width = std::max(width, one_line(name).size());
-  std::string text;
   for (const auto& [name, value] : rows) {
-    text += fmt::format("  {:{}}  {}\n", one_line(name), width, one_line(value));
+    lines.emplace_back(one_line(name), one_line(value));
+    width = std::max(width, lines.back().first.size());
   }
+  std::string text;
+  for (const auto& [name, value] : lines) text += fmt::format("  {:{}}  {}\n", name, width, value);
   return text;
 }
 
-std::string table(const std::vector<std::vector<std::string>>& rows) {
+std::string table(std::vector<std::vector<std::string>> rows) {
   std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
+  for (auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], one_line(row[c]).size());
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      row[c] = one_line(row[c]);
+      widths[c] = std::max(widths[c], row[c].size());
+    }
   }
   std::string text;
   for (const auto& row : rows) {
     text += "  ";
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string cell = one_line(row[c]);
-      text += c == 0 ? fmt::format("{:<{}}", cell, widths[c]) : fmt::format("  {:>{}}", cell, widths[c]);
+      text += c == 0 ? fmt::format("{:<{}}", row[c], widths[c]) : fmt::format("  {:>{}}", row[c], widths[c]);
     }
     text += "\n";
   }

@@ -15,7 +15,7 @@ using TextRow = std::pair<std::string, std::string>;
 std::string aligned_rows(const std::vector<TextRow>& rows);
 
 // Lines of cells; the first row is the heading; columns aligned to the right but the first.
-std::string table(const std::vector<std::vector<std::string>>& rows);
+std::string table(std::vector<std::vector<std::string>> rows);
 
 std::string text_of_vector(renderer::Vec3f v);  // "1.25 0 -3"
 std::string text_of_seconds(double seconds);    // "0.31 s", "4 min 05 s"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "inverse/transport/eigen_vectors.h"
 
@@ -17,8 +16,8 @@ constexpr int kFirstPart = 8;                        // … of which this part t
 constexpr double kNoiseBesideTarget = 0.3;           // … to so much of the target's noise
 
 // Makes this the light's indirect illumination of the receivers, where it stands now.
-void set_correction(const LightResponse& response, LightEstimate& light, const std::vector<Vec3f>& indirect) {
-  light.correction = column_of(indirect) - response.interpolated_indirect(light.position);
+void set_correction(const LightResponse& response, LightEstimate& light, const Column& indirect) {
+  light.correction = indirect - response.interpolated_indirect(light.position);
   light.corrected_at = light.position;
 }
 
@@ -31,12 +30,6 @@ renderer::PointLight unity_light(const Eigen::Vector3d& position) {
 
 int paths_of_each(std::size_t paths, std::size_t receivers) {
   return std::clamp(int(paths / receivers), kLeastPaths, kMostPaths);
-}
-
-std::vector<std::size_t> all_of(std::size_t count) {
-  std::vector<std::size_t> all(count);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
 }
 
 // What some receivers get of a unity light by bounces alone.
@@ -74,17 +67,16 @@ void ExactIndirect::correct(const LightResponse& response, LightEstimates& light
     positions.push_back(to_vec3f(lights[j].position));
   }
   const auto exact = indirect_illumination_by_light(tracer_, gather_, positions);
-  for (std::size_t k = 0; k < moved.size(); ++k) set_correction(response, lights[moved[k]], exact[k]);
+  for (std::size_t k = 0; k < moved.size(); ++k) set_correction(response, lights[moved[k]], column_of(exact[k]));
 }
 
 void ExactIndirect::correct_by_paths(const LightResponse& response, const Observations& observations,
                                      LightEstimates& lights) const {
   const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples) / lights.size();
+  const int most = paths_of_each(paths, response.receiver_count());
   for (LightEstimate& light : lights) {
-    const int most = paths_of_each(paths, response.receiver_count());
-    const std::vector<Vec3f> traced = traced_so_well(response, observations, light, most).value;
-    set_correction(response, light,
-                   without_direct(response, all_of(response.receiver_count()), light.position, traced));
+    const Column traced = column_of(traced_so_well(response, observations, light, most).value);
+    set_correction(response, light, traced - response.direct(light.position));
   }
 }
 
@@ -99,8 +91,7 @@ renderer::Illumination ExactIndirect::traced_so_well(const LightResponse& respon
   const Column error = column_of(traced.standard_error) * light.intensity.matrix().asDiagonal();
   const double noise = (observations.sqrt_weight.asDiagonal() * error).norm() / observations.target_norm;
   const double may_be = kNoiseBesideTarget * observations.noise;
-  const double needed = may_be > 0 ? std::ceil(first * std::pow(noise / may_be, 2)) : most;
-  const int more = int(std::min(needed, double(most))) - first;
+  const int more = renderer::samples_for_noise(first, noise, may_be, most) - first;
   return more > 0 ? joined(std::move(traced), first, trace(more, settings_.seed + 1), more) : traced;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "inverse/solve/not_reached.h"
 #include "inverse/solve/observe_target.h"
@@ -46,15 +45,13 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
   return first;
 }
 
-// How many samples it takes until noise no longer matters.
-double samples_needed(const SolveProblem& problem, const FreshTrace& traced) {
+// Relative to the target.
+double noise_that_does_not_matter(const SolveProblem& problem, const FreshTrace& traced) {
   const Target& target = problem.target;
   const double noise = relative_standard_error(traced.all), of_target = target_noise(target);
   const double error = relative_l2(traced.all.value, target.illumination, target.weight);
   const double unexplained = std::sqrt(std::max(0.0, error * error - noise * noise - of_target * of_target));
-  const double may_be = std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
-  if (noise <= may_be) return traced.samples;
-  return may_be > 0 ? traced.samples * std::pow(noise / may_be, 2) : std::numeric_limits<double>::infinity();
+  return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
 }
 
 }  // namespace
@@ -83,8 +80,11 @@ FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights&
 FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
                      const SolveOptions& options, const renderer::Control& control) {
   const int most = verification_samples(options, problem.target.receivers.size());
-  const double needed = options.verification_samples > 0 ? most : std::ceil(samples_needed(problem, first));
-  const int more = int(std::min(needed, double(most))) - first.samples;
+  const int needed = options.verification_samples > 0
+                         ? most
+                         : renderer::samples_for_noise(first.samples, relative_standard_error(first.all),
+                                             noise_that_does_not_matter(problem, first), most);
+  const int more = needed - first.samples;
   if (more <= 0) return first;
   return joined(std::move(first), trace_afresh(problem, lights, more, fresh_seed(options.seed, 4), control));
 }

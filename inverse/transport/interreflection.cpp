@@ -145,11 +145,6 @@ std::array<double, 3> spread(const SparseTransport& k) {
   return squares;
 }
 
-template <class Lanes>
-std::vector<Lanes> sum_of_any(const Interreflection& k, const std::vector<Lanes>& direct, int bounces) {
-  return bounces < 0 ? all_bounces(k, direct) : first_terms(k.one_bounce, direct, bounces);
-}
-
 }  // namespace
 
 Interreflection make_interreflection(SparseTransport one_bounce) {
@@ -164,19 +159,13 @@ Interreflection transposed(const Interreflection& k) {
   return {k.one_bounce.transposed(k.one_bounce.row_count()), k.spectral_radius, k.imaginary};
 }
 
-std::vector<LightBlock> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightBlock>& direct,
-                                       int bounces) {
-  return sum_of_any(interreflection, direct, bounces);
+template <class Lanes>
+std::vector<Lanes> sum_of_bounces(const Interreflection& k, const std::vector<Lanes>& direct, int bounces) {
+  return bounces < 0 ? all_bounces(k, direct) : first_terms(k.one_bounce, direct, bounces);
 }
 
-std::vector<LightQuad> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightQuad>& direct,
-                                      int bounces) {
-  return sum_of_any(interreflection, direct, bounces);
-}
-
-std::vector<OneLight> sum_of_bounces(const Interreflection& interreflection, const std::vector<OneLight>& direct,
-                                     int bounces) {
-  return sum_of_any(interreflection, direct, bounces);
-}
+template std::vector<LightBlock> sum_of_bounces(const Interreflection&, const std::vector<LightBlock>&, int);
+template std::vector<LightQuad> sum_of_bounces(const Interreflection&, const std::vector<LightQuad>&, int);
+template std::vector<OneLight> sum_of_bounces(const Interreflection&, const std::vector<OneLight>&, int);
 
 }  // namespace chiaro::inverse

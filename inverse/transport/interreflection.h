@@ -28,11 +28,9 @@ Interreflection make_interreflection(SparseTransport one_bounce);
 Interreflection transposed(const Interreflection& interreflection);
 
 // `bounces` terms of the series, direct light the first of them; −1: all, to 1e-3 (relative L2), mostly far less.
-std::vector<LightBlock> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightBlock>& direct,
-                                       int bounces);
-std::vector<LightQuad> sum_of_bounces(const Interreflection& interreflection, const std::vector<LightQuad>& direct,
-                                      int bounces);
-std::vector<OneLight> sum_of_bounces(const Interreflection& interreflection, const std::vector<OneLight>& direct,
-                                     int bounces);
+// Lanes: LightBlock, LightQuad or OneLight.
+template <class Lanes>
+std::vector<Lanes> sum_of_bounces(const Interreflection& interreflection, const std::vector<Lanes>& direct,
+                                  int bounces);
 
 }  // namespace chiaro::inverse

@@ -139,6 +139,12 @@ Illumination joined(Illumination first, int first_samples, const Illumination& s
   return first;
 }
 
+int samples_for_noise(int samples, double noise, double may_be, int most) {
+  if (noise <= may_be) return samples;
+  const double needed = std::ceil(samples * std::pow(noise / may_be, 2));  // infinite where nothing may be
+  return int(std::min(needed, double(most)));
+}
+
 double relative_standard_error(const Illumination& illumination) {
   double error = 0, value = 0;
   for (std::size_t i = 0; i < illumination.value.size(); ++i) {

@@ -40,6 +40,9 @@ IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::sp
 // Two independent traces of the same points together, of so many samples each.
 Illumination joined(Illumination first, int first_samples, const Illumination& second, int second_samples);
 
+// How many samples it takes until `noise` of so many has come down to `may_be`: no fewer, and `most` at most.
+int samples_for_noise(int samples, double noise, double may_be, int most);
+
 // sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give.
 double relative_standard_error(const Illumination& illumination);
 
