@@ -6,7 +6,9 @@
 
 #include "inverse/solve/insertion.h"
 #include "inverse/solve/split_lights.h"
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
+#include "renderer/core/sampler.h"
 #include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
@@ -20,7 +22,6 @@ constexpr double kNearNoise = 5;       // times the noise, or less: little else 
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
 constexpr double kOfNoLight = 1;       // error: sets that are no better are not worth exact indirect light
-constexpr double kLeastGain = 0.01;    // of the error, by a light that is there
 constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
 constexpr std::size_t kMostSplits = 3;
 constexpr double kStill = 5e-4;  // of the region's diagonal: indirect light hardly changes
@@ -28,6 +29,8 @@ constexpr double kStill = 5e-4;  // of the region's diagonal: indirect light har
 constexpr JointRefinementOptions kSearching{.max_iterations = 15, .function_tolerance = 1e-3};
 constexpr JointRefinementOptions kToTheEnd{.max_iterations = 60, .function_tolerance = 1e-5};
 constexpr std::size_t kMostParents = 3;  // sets with one light less, descended to the end
+constexpr int kShakes = 8;               // further descents of a set that is to be refused …
+constexpr float kShaken = 0.03F;         // … from as far away at most, of the region's diagonal
 
 class Search {
  public:
@@ -148,7 +151,7 @@ class Search {
     std::size_t size = knee();
     if (options_.held_out == nullptr || least_error() > kNearNoise * observations_.noise) return size;
     for (std::size_t larger = size + 1; larger < best_.size(); ++larger) {
-      if (!(best_[larger].error < (1 - kLeastGain) * best_[size].error)) continue;
+      if (!(best_[larger].error < best_[size].error)) continue;
       if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]))) size = larger;
     }
     return size;
@@ -189,6 +192,7 @@ class Search {
   // the end, it may not be missed.
   void confirm_count() {
     if (options_.exact_lights > 0 || best_.size() < 2) return;
+    for (std::size_t size = knee(); size < best_size() && !out_of_time(); ++size) shake(size);
     for (std::size_t size = best_size(); size > 1 && !out_of_time(); --size) {
       consider({best_[size].lights}, kToTheEnd);
       std::vector<LightEstimates> smaller = parents(best_[size].lights, kMostParents);
@@ -196,6 +200,22 @@ class Search {
       consider(smaller, kToTheEnd);
       if (best_size() >= size) return;
     }
+  }
+
+  // Descents of too few lights and of lights that hang on a shadow's edge look alike, until they start elsewhere.
+  void shake(std::size_t size) {
+    const LightEstimates& lights = best_[size].lights;
+    if (lights.empty()) return;
+    std::vector<LightEstimates> starts(kShakes, lights);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      renderer::Sampler sampler(size, 0, std::uint32_t(k));
+      for (LightEstimate& light : starts[k]) {
+        const Vec3f at = to_vec3f(light.position), far = Vec3f(kShaken * response_.grid().region.diagonal());
+        const Vec3f place = random_position({at - far, at + far}, sampler);
+        light.position = response_.places().nearest(to_eigen(place)).value_or(light.position);
+      }
+    }
+    consider(starts, kToTheEnd);
   }
 
   // Without one light each; those of the least errors.

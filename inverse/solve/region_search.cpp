@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kHeldOut = 1500;  // receivers that tell how many lights there are
+constexpr std::size_t kHeldOut = 6000;  // receivers that tell how many lights there are
 constexpr double kCloseEnough = 0.01;   // error, whatever the noise
 constexpr double kMatters = 0.05;       // of the target's norm: a light that a larger region is for
 constexpr std::size_t kCrowd = 3;       // so many of them at the border may stand for fewer beyond it

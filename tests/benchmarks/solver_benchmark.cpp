@@ -25,11 +25,11 @@ struct Options {
   std::string scene, method = "joint";
   TargetOptions targets;
   std::uint64_t seed = 1;
-  std::size_t sets = 20;
+  std::size_t sets = 20, first_set = 0;
   std::vector<std::size_t> lights{1, 3, 5, 6, 7, 9, 11, 16};
   int important_vertices = 1000;
   float max_edge = 0;
-  bool verbose = false;
+  bool verbose = false, from_truth = false;
 };
 
 Options parse(int argc, char** argv) {
@@ -38,6 +38,7 @@ Options parse(int argc, char** argv) {
   app.add_option("scene", options.scene)->required();
   app.add_option("--seed", options.seed);
   app.add_option("--sets", options.sets, "Of each count of lights");
+  app.add_option("--first-set", options.first_set, "Leaves out those before");
   app.add_option("--lights", options.lights)->delimiter(',');
   app.add_option("--noise", options.targets.noise, "Of the targets, relative L2");
   app.add_option("--method", options.method)->check(CLI::IsMember({"joint", "thesis", "both"}));
@@ -45,6 +46,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--max-edge", options.max_edge, "Of the receivers, metres");
   app.add_option("--targets", options.targets.folder,
                  "Folder that keeps the targets for later runs with the same options");
+  app.add_flag("--from-truth", options.from_truth, "Nothing is searched: how well the true lights could be found");
   app.add_flag("--verbose", options.verbose, "What each set came to");
   parse_or_exit(app, argc, argv);
   return options;
@@ -164,23 +166,25 @@ void print_row(std::size_t lights, const NamedMethod& method, const Row& row) {
   std::fflush(stdout);
 }
 
-SolveResult solve_by(const Measurement& with, const Target& target, SolveMethod method) {
+SolveResult solve_by(const Measurement& with, const Target& target, const std::vector<PointLight>& truth,
+                     SolveMethod method) {
   SolveOptions options;
   options.method = method;
   options.verification_samples = 256;
   options.important_vertices = with.options.important_vertices;
+  if (with.options.from_truth) options.earlier = {{truth, 0}};
   return solve({with.stage.tracer, target, with.bake.file(), {}, with.bake.settings(), {}}, options);
 }
 
 void measure_and_print(const Measurement& with, std::size_t count) {
   const std::vector<NamedMethod> methods = methods_of(with.options);
   std::vector<Row> rows(methods.size());
-  for (std::size_t set = 0; set < with.options.sets; ++set) {
+  for (std::size_t set = with.options.first_set; set < with.options.sets; ++set) {
     const SetNumber number{with.options.seed, count, set};
     const std::vector<PointLight> truth = random_lights(with.stage, number);
     const Target target = traced_target(with.stage, truth, number, with.options.targets);
     for (std::size_t m = 0; m < methods.size(); ++m) {
-      const SolveResult result = solve_by(with, target, methods[m].method);
+      const SolveResult result = solve_by(with, target, truth, methods[m].method);
       add_case(rows[m], with, truth, result);
       if (with.options.verbose) print_case(set, with, truth, result, rows[m].beyond.back());
     }
