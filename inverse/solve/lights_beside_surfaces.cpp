@@ -1,8 +1,10 @@
 #include "inverse/solve/lights_beside_surfaces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "inverse/numerics/nelder_mead.h"
 #include "inverse/solve/insertion.h"
@@ -79,12 +81,14 @@ class SingleLight {
     for (const std::size_t i : brightest_) relative_.sqrt_weight[Eigen::Index(i)] = bound_[Eigen::Index(i)];
   }
 
-  LightEstimate find() {
+  // Nothing where no light may stand near the brightest receivers.
+  std::optional<LightEstimate> find() {
     Place best;
     for (const Place& start : starts()) {
       const Place refined = refine(start);
       if (refined.misfit < best.misfit) best = refined;
     }
+    if (best.distance == 0) return std::nullopt;
     return calibrated(best);
   }
 
@@ -93,6 +97,7 @@ class SingleLight {
     for (const std::size_t i : brightest_) {
       start.distance = std::min(start.distance, (position - to_eigen(response_.receivers()[i].position)).norm());
     }
+    start.distance = std::max(start.distance, double(kNearest * response_.grid().region.diagonal()));
     return calibrated(start);
   }
 
@@ -152,6 +157,7 @@ class SingleLight {
         places.push_back(judge(position, double(distance)));
       }
     }
+    std::erase_if(places, [](const Place& place) { return !std::isfinite(place.misfit); });
     std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.misfit < b.misfit; });
     places.resize(std::min(kStarts, places.size()));
     return places;
@@ -193,7 +199,9 @@ LightEstimates find_lights_beside_surfaces(const LightResponse& response, const 
   while (int(found.size()) < most && anything_wanted(left)) {
     const Eigen::VectorXd energy = squared_residuals(left);
     if (!held_by_few(energy, left.stands_for)) break;
-    LightEstimates one{SingleLight(response, exact, left).find()};
+    const std::optional<LightEstimate> light = SingleLight(response, exact, left).find();
+    if (!light) break;
+    LightEstimates one{*light};
     if (squared_residuals(less(left, response, one)).sum() > (1 - kMayExplain) * energy.sum()) break;
     exact.correct_by_paths(response, left, one);
     left = less(std::move(left), response, one);

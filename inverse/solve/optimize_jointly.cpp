@@ -1,6 +1,7 @@
 #include "inverse/solve/optimize_jointly.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/fit_in_place.h"
@@ -16,6 +17,7 @@ constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand whe
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
+constexpr double kSignificant = 6;      // times what noise alone makes of a light's contribution
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
@@ -35,19 +37,20 @@ std::vector<LightSet> error_curve_of(const LightResponse& response, const Observ
   return curve;
 }
 
-// Without the lights that the last descent left with less than what anybody sees of them, and those that make good
-// what is wrong with one receiver, and stand no one can tell where; one always stays. The first `beside_surfaces` are
-// those.
+// Without the lights that the last descent left with less than what anybody sees of them or noise makes of itself, and
+// those that make good what is wrong with one receiver, and stand no one can tell where; one always stays. The first
+// `beside_surfaces` are those.
 LightEstimates without_negligible(const LightResponse& response, const Observations& judged,
                                   const LightEstimates& lights, std::size_t& beside_surfaces) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   const std::vector<LightInterval> intervals = light_intervals(response, judged, lights).lights;
+  const double of_noise = kSignificant * judged.noise / std::sqrt(double(judged.wanted.size()));
   LightEstimates kept;
   std::size_t kept_beside = 0;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], lights[j].intensity);
     const bool nowhere = lights.size() <= kMostLightsWithIntervals && !intervals[j].position.array().isFinite().any();
-    if (norm > (nowhere ? kHardlySeen : kNegligible) * judged.target_norm) {
+    if (norm > std::max(of_noise, nowhere ? kHardlySeen : kNegligible) * judged.target_norm) {
       kept.push_back(lights[j]);
       kept_beside += j < beside_surfaces ? 1 : 0;
     }

@@ -83,7 +83,7 @@ FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights
   const int needed = options.verification_samples > 0
                          ? most
                          : renderer::samples_for_noise(first.samples, relative_standard_error(first.all),
-                                             noise_that_does_not_matter(problem, first), most);
+                                                       noise_that_does_not_matter(problem, first), most);
   const int more = needed - first.samples;
   if (more <= 0) return first;
   return joined(std::move(first), trace_afresh(problem, lights, more, fresh_seed(options.seed, 4), control));

@@ -28,6 +28,7 @@ constexpr double kBlackBody = 1e-3;        // relative
 constexpr double kHanging = 1.001e-3;      // of the clearance, or …
 constexpr double kHangingAt = 1.001e-4;    // … metres
 constexpr double kInFront = 0.4999;        // cosine
+constexpr double kAtEdge = 1e-6;           // metres
 constexpr double kDefaultClearance = .01;  // of the scene's diagonal
 constexpr double kOnSurface = 1e-4;        // metres, or less: no light stands there
 constexpr std::uint32_t kTries = 3000;     // of a random search
@@ -82,17 +83,45 @@ double clearance_of(const renderer::Scene& scene, const Mount& mount) {
   return mount.clearance.value_or(kDefaultClearance * double(bounds_of(scene, "").diagonal()));
 }
 
-// As far from the node as wanted, and not beside or behind all of its nearest triangles.
+using Corners = std::array<Vector3d, 3>;
+
+double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const double along = std::clamp((p - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-300), 0.0, 1.0);
+  return (a + along * (b - a) - p).norm();
+}
+
+bool has_corner(const Corners& corners, const Vector3d& corner) {
+  return std::find(corners.begin(), corners.end(), corner) != corners.end();
+}
+
+// The surface ends there: at an edge of this triangle alone.
+bool is_at_an_end(const renderer::Scene& scene, const std::string& node, const Corners& corners, const Vector3d& at) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d &a = corners[k], &b = corners[(k + 1) % 3];
+    if (distance_to_segment(at, a, b) > kAtEdge) continue;
+    int triangles = 0;
+    each_triangle(scene, node, [&](const Corners& other, const auto&) {
+      triangles += has_corner(other, a) && has_corner(other, b) ? 1 : 0;
+    });
+    if (triangles == 1) return true;
+  }
+  return false;
+}
+
+// As far from the node as wanted, and not beside or behind all of its nearest triangles, nor past where they end.
 bool hangs_on(const renderer::Scene& scene, const Mount& mount, const Vector3d& position) {
   const double clearance = clearance_of(scene, mount), least = test::distance_to_surfaces(scene, position, mount.node);
-  if (std::abs(least - clearance) > std::max(kHanging * clearance, kHangingAt)) return false;
+  const double tolerance = std::max(kHanging * clearance, kHangingAt);
+  if (std::abs(least - clearance) > tolerance) return false;
   bool in_front = false;
-  each_triangle(scene, mount.node, [&](const auto& corners, const renderer::Material& material) {
-    const Vector3d way = position - test::nearest_point_of(corners, position);
+  each_triangle(scene, mount.node, [&](const Corners& corners, const renderer::Material& material) {
+    const Vector3d nearest = test::nearest_point_of(corners, position), way = position - nearest;
     if (way.norm() > least + 1e-6) return;
     const Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
     const double along = material.double_sided ? std::abs(way.dot(normal)) : way.dot(normal);
-    in_front = in_front || along >= kInFront * way.norm() - 1e-6;
+    const double beside = (way - way.dot(normal) * normal).norm();
+    const bool past_the_end = beside > tolerance && is_at_an_end(scene, mount.node, corners, nearest);
+    in_front = in_front || (!past_the_end && along >= kInFront * way.norm() - 1e-6);
   });
   return in_front;
 }

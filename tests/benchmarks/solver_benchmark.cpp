@@ -67,6 +67,7 @@ std::vector<NamedMethod> methods_of(const Options& options) {
 // Of lights found, nearest pairs first; relative to the diagonal and to the true intensity.
 struct Distances {
   std::vector<double> position, intensity;
+  std::vector<std::size_t> too_many;       // found, of none of those that made the target
   std::size_t inside = 0, parameters = 0;  // of their 90 % intervals
 };
 
@@ -99,6 +100,9 @@ Distances match(const std::vector<PointLight>& truth, const std::vector<FoundLig
           std::abs(std::get<PointLight>(light.light).intensity[a] - wanted[a]) <= light.intensity_interval[a] ? 1 : 0;
       distances.parameters += 2;
     }
+  }
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    if (!found_taken[j]) distances.too_many.push_back(j);
   }
   return distances;
 }
@@ -143,6 +147,9 @@ void print_case(std::size_t set, const Measurement& with, const std::vector<Poin
   for (std::size_t k = 0; k < distances.position.size(); ++k) {
     std::printf("    light %zu: %.3f %% off, intensity %.2f %%\n", k + 1, 100 * distances.position[k],
                 100 * distances.intensity[k]);
+  }
+  for (const std::size_t j : distances.too_many) {
+    std::printf("    one too many: contribution %.2f %%\n", 100 * result.lights[j].contribution);
   }
   std::printf("    error in %% by number of lights:");
   for (const LightSet& point : result.error_curve)

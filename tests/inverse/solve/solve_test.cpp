@@ -68,17 +68,20 @@ TEST(Solve, FindsTwoLightsByDirectLight) {
 }
 
 // Seven centimetres above a receiver of the floor, which then holds nearly all of the target's squared norm.
-TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
-  const PaintedCorner corner;
-  const Receivers& receivers = corner.receivers();
+LightEstimate light_beside_the_floor(const Receivers& receivers) {
   std::size_t beside = 0;
   const auto distance = [&](std::size_t i) { return length(receivers.positions[i] - Vec3f{2.0F, 0.0F, 3.2F}); };
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     if (distance(i) < distance(beside)) beside = i;
   }
   const Vec3f p = receivers.samples[beside].position + 0.07F * receivers.samples[beside].normal;
+  return {{p.x, p.y, p.z}, {4, 8, 2}};
+}
+
+TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
+  const PaintedCorner corner;
   LightEstimates known = known_lights(1);
-  known.push_back({{p.x, p.y, p.z}, {4, 8, 2}});
+  known.push_back(light_beside_the_floor(corner.receivers()));
   for (const int bounces : {0, -1}) {
     const SolveResult result = solve(problem_of(corner, corner.target(known, bounces), bounces), quick());
     ASSERT_EQ(result.lights.size(), 2U) << bounces;
@@ -95,6 +98,18 @@ TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
   one = quick();
   one.exact_lights = 1;
   EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
+}
+
+TEST(Solve, KeepsToARegionFarFromTheBrightestReceivers) {
+  const PaintedCorner corner;
+  const Target target = corner.target({light_beside_the_floor(corner.receivers())}, 0);
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.grid.region = Box3f{{1, 2, 1}, {1.3F, 2.2F, 2.5F}};
+  const SolveResult result = solve(problem, quick());
+  ASSERT_FALSE(result.lights.empty());
+  for (const FoundLight& light : result.lights) {
+    EXPECT_TRUE(problem.grid.region->contains(std::get<renderer::PointLight>(light.light).position));
+  }
 }
 
 // What is left of the error when the noise of the target and of the evaluation is taken off.
