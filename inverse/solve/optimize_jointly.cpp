@@ -17,7 +17,7 @@ constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand whe
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
-constexpr double kSignificant = 6;      // times what noise alone makes of a light's contribution
+constexpr double kSignificant = 10;     // times what noise alone makes of a light: transport errs, too
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
