@@ -206,12 +206,13 @@ class Search {
   void shake(std::size_t size) {
     const LightEstimates& lights = best_[size].lights;
     if (lights.empty()) return;
+    const float far = kShaken * response_.grid().region.diagonal();
     std::vector<LightEstimates> starts(kShakes, lights);
     for (std::size_t k = 0; k < starts.size(); ++k) {
       renderer::Sampler sampler(size, 0, std::uint32_t(k));
       for (LightEstimate& light : starts[k]) {
-        const Vec3f at = to_vec3f(light.position), far = Vec3f(kShaken * response_.grid().region.diagonal());
-        const Vec3f place = random_position({at - far, at + far}, sampler);
+        const Vec3f at = to_vec3f(light.position);
+        const Vec3f place = random_position({at - Vec3f{far, far, far}, at + Vec3f{far, far, far}}, sampler);
         light.position = response_.places().nearest(to_eigen(place)).value_or(light.position);
       }
     }

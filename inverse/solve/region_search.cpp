@@ -133,7 +133,8 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* smaller, StageClock&
                   ? weighted_by_noise(basis.published, cache.indirect_relative_error)
                   : with_capped_weights(weighted_by_objective(basis.published, basis.options.objective));
   optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces_.size())}});
-  if (!beside_surfaces_.empty()) return;
+  // Without noise a fit errs by transport alone, and so do those that are held out.
+  if (!beside_surfaces_.empty() || basis.published.noise == 0) return;
   held_out_ = smaller != nullptr ? smaller->held_out_ : hold_out(basis, problem, cache.settings);
   clock.finish("held_out", {});
 }
