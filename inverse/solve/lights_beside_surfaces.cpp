@@ -88,7 +88,7 @@ class SingleLight {
       const Place refined = refine(start);
       if (refined.misfit < best.misfit) best = refined;
     }
-    if (best.distance == 0) return std::nullopt;
+    if (!std::isfinite(best.misfit)) return std::nullopt;
     return calibrated(best);
   }
 

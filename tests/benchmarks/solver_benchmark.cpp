@@ -25,7 +25,7 @@ struct Options {
   std::string scene, method = "joint";
   TargetOptions targets;
   std::uint64_t seed = 1;
-  std::size_t sets = 20, first_set = 0;
+  std::size_t sets = 20, first = 0;
   std::vector<std::size_t> lights{1, 3, 5, 6, 7, 9, 11, 16};
   int important_vertices = 1000;
   float max_edge = 0;
@@ -38,7 +38,7 @@ Options parse(int argc, char** argv) {
   app.add_option("scene", options.scene)->required();
   app.add_option("--seed", options.seed);
   app.add_option("--sets", options.sets, "Of each count of lights");
-  app.add_option("--first-set", options.first_set, "Leaves out those before");
+  app.add_option("--first", options.first, "Number of the first set");
   app.add_option("--lights", options.lights)->delimiter(',');
   app.add_option("--noise", options.targets.noise, "Of the targets, relative L2");
   app.add_option("--method", options.method)->check(CLI::IsMember({"joint", "thesis", "both"}));
@@ -186,7 +186,8 @@ SolveResult solve_by(const Measurement& with, const Target& target, const std::v
 void measure_and_print(const Measurement& with, std::size_t count) {
   const std::vector<NamedMethod> methods = methods_of(with.options);
   std::vector<Row> rows(methods.size());
-  for (std::size_t set = with.options.first_set; set < with.options.sets; ++set) {
+  const std::size_t first = with.options.first;
+  for (std::size_t set = first; set < first + with.options.sets; ++set) {
     const SetNumber number{with.options.seed, count, set};
     const std::vector<PointLight> truth = random_lights(with.stage, number);
     const Target target = traced_target(with.stage, truth, number, with.options.targets);
