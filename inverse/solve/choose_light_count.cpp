@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "inverse/solve/insertion.h"
+#include "inverse/solve/known_corrections.h"
+#include "inverse/solve/pair_of_lights.h"
 #include "inverse/solve/split_lights.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
@@ -16,18 +20,23 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostCuts = 16;          // sizes of the light tree's cuts that are refined
-constexpr double kKnee = 1.25;         // further lights must lower an error that is not noise by this factor
-constexpr double kNearNoise = 5;       // times the noise, or less: little else is left
+constexpr int kMostCuts = 16;     // sizes of the light tree's cuts that are refined
+constexpr int kCutsAtOnce = 2;    // in turn, from the smallest …
+constexpr int kIdleCuts = 2;      // … until so many in a row explain no more
+constexpr double kNoise = 2;      // times the noise, or less: there is nothing but noise and the errors of transport
+constexpr double kKnee = 1.25;    // further lights must lower an error that is not noise by this factor
+constexpr double kNearNoise = 5;  // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
-constexpr double kOfNoLight = 1;       // error: sets that are no better are not worth exact indirect light
 constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
-constexpr std::size_t kMostSplits = 3;
-constexpr double kStill = 5e-4;  // of the region's diagonal: indirect light hardly changes
+constexpr std::size_t kMostSplits = 3, kMostPairs = 3;
+// Of many starts these tell which to follow.
+constexpr JointRefinementOptions kFirstSteps{.max_iterations = 4, .function_tolerance = 1e-3};
+constexpr std::size_t kFinalists = 2;
 // Beyond that descents go on from one shadow edge to the next.
 constexpr JointRefinementOptions kSearching{.max_iterations = 15, .function_tolerance = 1e-3};
 constexpr JointRefinementOptions kToTheEnd{.max_iterations = 60, .function_tolerance = 1e-5};
+constexpr int kMostRounds = 3;           // of growth after the number of lights was told
 constexpr std::size_t kMostParents = 3;  // sets with one light less, descended to the end
 constexpr int kShakes = 8;               // further descents of a set that is to be refused …
 constexpr float kShaken = 0.03F;         // … from as far away at most, of the region's diagonal
@@ -36,7 +45,9 @@ class Search {
  public:
   Search(const LightResponse& response, const Observations& observations, const LightTree& tree,
          const LightCountOptions& options)
-      : response_(response), observations_(observations), tree_(tree), options_(options), start_(Clock::now()) {}
+      : response_(response), observations_(observations), tree_(tree), options_(options), start_(Clock::now()) {
+    if (options.exact != nullptr) corrections_.emplace(*options.exact, response);
+  }
 
   LightCountResult run() {
     if (options_.earlier.empty()) {
@@ -44,6 +55,7 @@ class Search {
       insert_lights();
       eliminate_lights();
       confirm_count();
+      grow_again();
     }
     for (const LightEstimates& lights : options_.earlier) {
       if (!out_of_time()) consider({lights});
@@ -75,38 +87,36 @@ class Search {
   }
 
   // Refines them and keeps the best, if none of its size was better, without the lights that went out.
-  void consider(const std::vector<LightEstimates>& starts, const JointRefinementOptions& how = kSearching) {
+  void consider(std::vector<LightEstimates> starts, const JointRefinementOptions& how = kSearching) {
+    if (starts.size() > kFinalists) starts = best_of(refine_all(starts, kFirstSteps), kFinalists);
     std::vector<JointRefinement> refined = refine_all(starts, how);
     const auto best = std::min_element(refined.begin(), refined.end(),
                                        [](const auto& a, const auto& b) { return a.error < b.error; });
     if (best != refined.end()) keep_exactly({*best}, how);
   }
 
-  // Between the lights of a grid indirect light is known less well than targets are: sets are refined again without
-  // interpolation.
+  static std::vector<LightEstimates> best_of(std::vector<JointRefinement> refined, std::size_t count) {
+    std::stable_sort(refined.begin(), refined.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
+    std::vector<LightEstimates> best;
+    for (std::size_t k = 0; k < std::min(count, refined.size()); ++k) best.push_back(std::move(refined[k].lights));
+    return best;
+  }
+
+  // Between the lights of a grid indirect light is known less well than targets are: sets that leave little are refined
+  // again without interpolation.
   void keep_exactly(std::vector<JointRefinement> refined, const JointRefinementOptions& how) {
+    const double little = kNearNoise * std::hypot(observations_.noise, options_.transport_error);
     std::vector<LightEstimates> worth_it;
     for (JointRefinement& set : refined) {
-      if (options_.exact != nullptr && set.error < kOfNoLight) {
+      if (corrections_ && set.error < little && !corrections_->has_all(set.lights)) {
         worth_it.push_back(std::move(set.lights));
       } else {
         keep(std::move(set));
       }
     }
     if (worth_it.empty()) return;
-    correct_all(worth_it);
+    corrections_->correct(worth_it);
     for (JointRefinement& set : refine_all(worth_it, how)) keep(std::move(set));
-  }
-
-  // All at once, which takes little more than one.
-  void correct_all(std::vector<LightEstimates>& sets) const {
-    LightEstimates all;
-    for (const LightEstimates& set : sets) all.insert(all.end(), set.begin(), set.end());
-    options_.exact->correct(response_, all, kStill * double(response_.grid().region.diagonal()));
-    auto corrected = all.begin();
-    for (LightEstimates& set : sets) {
-      for (LightEstimate& light : set) light = std::move(*corrected++);
-    }
   }
 
   void keep(JointRefinement refined) {
@@ -117,14 +127,21 @@ class Search {
     if (refined.error < best_[count].error) best_[count] = {std::move(refined.lights), refined.error, {}};
   }
 
+  // Until larger ones explain no more.
   void refine_cuts() {
     const int sizes = std::min({tree_.tree.leaf_count, most_lights(), kMostCuts});
-    std::vector<LightEstimates> cuts;
-    for (int size = 1; size <= sizes && !out_of_time(); ++size) {
-      cuts.push_back(cut_light_tree(tree_, observations_, {0, size, size}).lights);
+    for (int size = 1; size <= sizes && !out_of_time(); size += kCutsAtOnce) {
+      std::vector<LightEstimates> cuts;
+      for (int k = size; k < std::min(size + kCutsAtOnce, sizes + 1); ++k) {
+        cuts.push_back(cut_light_tree(tree_, observations_, {0, k, k}).lights);
+      }
+      keep_exactly(refine_all(cuts, kSearching), kSearching);
+      cuts_are_enough_ = little_is_left() && int(knee()) + kIdleCuts < size + int(cuts.size());
+      if (cuts_are_enough_) break;
     }
-    keep_exactly(refine_all(cuts, kSearching), kSearching);
   }
+
+  bool little_is_left() const { return least_error() <= std::max(kNoise * observations_.noise, kRounding); }
 
   double least_error() const {
     double least = std::numeric_limits<double>::infinity();
@@ -159,6 +176,9 @@ class Search {
 
   void consider_one_more(const LightEstimates& lights) {
     std::vector<LightEstimates> starts = propose_splits(response_, observations_, lights, kMostSplits);
+    for (LightEstimates& pair : propose_pairs(response_, observations_, lights, kMostPairs)) {
+      starts.push_back(std::move(pair));
+    }
     for (const LightEstimate& inserted : propose_insertions(response_, observations_, lights)) {
       starts.push_back(lights);
       starts.back().push_back(inserted);
@@ -168,7 +188,7 @@ class Search {
 
   void insert_lights() {
     if (best_.size() < 2) consider_one_more({});
-    int idle = 0;
+    int idle = cuts_are_enough_ ? 1 : 0;
     for (std::size_t size = best_size(); idle < kIdleInsertions && int(size) < most_lights() && !out_of_time();
          ++size) {
       if (size >= best_.size() || best_[size].lights.empty()) break;
@@ -197,8 +217,22 @@ class Search {
       consider({best_[size].lights}, kToTheEnd);
       std::vector<LightEstimates> smaller = parents(best_[size].lights, kMostParents);
       if (!best_[size - 1].lights.empty()) smaller.push_back(best_[size - 1].lights);
-      consider(smaller, kToTheEnd);
+      consider(smaller);
+      if (best_[size - 1].error < kKnee * best_[size].error) consider({best_[size - 1].lights}, kToTheEnd);
       if (best_size() >= size) return;
+    }
+  }
+
+  // One light more never makes a set worse: where it seems to, it was sought beside other lights than these.
+  void grow_again() {
+    const auto exactly = std::size_t(std::max(0, options_.exact_lights));
+    for (int round = 0; round < kMostRounds && !out_of_time(); ++round) {
+      const std::size_t size = exactly > 0 ? exactly - 1 : best_size();
+      if (size == 0 || size >= best_.size() || int(size) >= most_lights()) return;
+      if (size + 1 < best_.size() && best_[size + 1].error < best_[size].error) return;
+      consider_one_more(best_[size].lights);
+      if (exactly > 0 || best_size() == size) return;
+      confirm_count();
     }
   }
 
@@ -258,6 +292,8 @@ class Search {
   LightCountOptions options_;
   Clock::time_point start_;
   std::vector<Candidate> best_{1};  // by number of lights
+  std::optional<KnownCorrections> corrections_;
+  bool cuts_are_enough_ = false;  // larger ones than the best explain no more
   int refinements_ = 0;
   bool out_of_time_ = false;
 };

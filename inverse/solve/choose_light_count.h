@@ -15,6 +15,7 @@ struct LightCountOptions {
   int max_lights = 32;
   int exact_lights = 0;                   // 0: chosen here; fewer where all of them would not shine
   double time_limit = 0;                  // seconds; 0: none
+  double transport_error = 0;             // of interpolated indirect light, relative
   const ExactIndirect* exact = nullptr;   // sets are judged by it; absent: by interpolated light alone
   const HeldOut* held_out = nullptr;      // tell how many lights there are; absent: the error of the fit does
   std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for

@@ -57,17 +57,9 @@ ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vecto
       settings_(settings),
       gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
 
-void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights, double near) const {
-  std::vector<std::size_t> moved;
-  std::vector<Vec3f> positions;
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    const bool corrected = lights[j].correction.size() > 0;
-    if (corrected && near > 0 && (lights[j].position - lights[j].corrected_at).norm() <= near) continue;
-    moved.push_back(j);
-    positions.push_back(to_vec3f(lights[j].position));
-  }
-  const auto exact = indirect_illumination_by_light(tracer_, gather_, positions);
-  for (std::size_t k = 0; k < moved.size(); ++k) set_correction(response, lights[moved[k]], column_of(exact[k]));
+void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
+  const auto exact = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));
+  for (std::size_t j = 0; j < lights.size(); ++j) set_correction(response, lights[j], column_of(exact[j]));
 }
 
 void ExactIndirect::correct_by_paths(const LightResponse& response, const Observations& observations,

@@ -12,9 +12,8 @@ class ExactIndirect {
   ExactIndirect(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
                 const BakeSettings& settings);
 
-  // Gives each light the correction that makes its response exact where it stands now; where it has one from a place
-  // no farther than `near` (metres) it keeps that.
-  void correct(const LightResponse& response, LightEstimates& lights, double near = 0) const;
+  // Gives each light the correction that makes its response exact where it stands now.
+  void correct(const LightResponse& response, LightEstimates& lights) const;
   // The same by path tracing: slower and noisier, but right where gather points are too far apart, and for materials
   // that are not Lambertian. By as many paths as it takes until their noise hardly adds to that of the target.
   void correct_by_paths(const LightResponse& response, const Observations& observations, LightEstimates& lights) const;

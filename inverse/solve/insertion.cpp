@@ -25,13 +25,39 @@ struct Insertion {
   LightEstimate light;
 };
 
+// What one light explains, by the intensity that fits best.
+class IntensityGain {
+ public:
+  explicit IntensityGain(const Observations& observations)
+      : weight_(observations.sqrt_weight.cwiseAbs2()), pull_(weight_.asDiagonal() * observations.wanted) {}
+
+  double fit(const Column& column, LightEstimate& light) const {
+    Eigen::Array3d along, squared;
+    for (int c = 0; c < 3; ++c) {
+      along[c] = std::max(0.0, pull_.col(c).dot(column.col(c)));
+      squared[c] = std::max(1e-300, (weight_.array() * column.col(c).array().square()).sum());
+    }
+    light.intensity = along / squared;
+    return (along.square() / squared).sum();
+  }
+  // Of the same light in all channels.
+  double of_grey(const Eigen::VectorXd& column) const {
+    const Eigen::Array3d along = (pull_.transpose() * column).array().max(0);
+    return along.square().sum() / std::max(1e-300, (weight_.array() * column.array().square()).sum());
+  }
+
+ private:
+  Eigen::VectorXd weight_;
+  Column pull_;
+};
+
 // The candidate so far that explains most, or none.
 class BestInsertion {
  public:
-  explicit BestInsertion(const Observations& residual) : residual_(residual) {}
+  explicit BestInsertion(const IntensityGain& gain) : gain_(gain) {}
 
   void consider(LightEstimate place, const Column& column) {
-    const double gain = fit_intensity(residual_, column, place);
+    const double gain = gain_.fit(column, place);
     if (gain > (best_ ? best_->gain : 0)) best_ = {gain, std::move(place)};
   }
   // True: there is one.
@@ -41,7 +67,7 @@ class BestInsertion {
   }
 
  private:
-  const Observations& residual_;
+  const IntensityGain& gain_;
   std::optional<Insertion> best_;
 };
 
@@ -66,12 +92,11 @@ std::vector<Column> direct_columns(const LightResponse& response, const std::vec
 }
 
 // Those from which most is explained if nothing is in the way.
-std::vector<Eigen::Vector3d> most_promising(const LightResponse& response, const Observations& residual,
+std::vector<Eigen::Vector3d> most_promising(const LightResponse& response, const IntensityGain& explains,
                                             const std::vector<Eigen::Vector3d>& places) {
   std::vector<std::pair<double, std::size_t>> gain(places.size());
   renderer::parallel_for(places.size(), [&](std::size_t j) {
-    LightEstimate light{places[j], Eigen::Array3d::Ones()};
-    gain[j] = {-fit_intensity(residual, response.unoccluded(places[j]), light), j};
+    gain[j] = {-explains.of_grey(response.unoccluded(places[j])), j};
   });
   const std::size_t count = std::min(kTraced, places.size());
   std::partial_sort(gain.begin(), gain.begin() + std::ptrdiff_t(count), gain.end());
@@ -83,12 +108,7 @@ std::vector<Eigen::Vector3d> most_promising(const LightResponse& response, const
 }  // namespace
 
 double fit_intensity(const Observations& observations, const Column& column, LightEstimate& light) {
-  const Eigen::VectorXd weight = observations.sqrt_weight.cwiseAbs2();
-  const Column weighted = weight.asDiagonal() * column;
-  const Eigen::Array3d along = weighted.cwiseProduct(observations.wanted).colwise().sum().transpose().array().max(0);
-  const Eigen::Array3d squared = weighted.cwiseProduct(column).colwise().sum().transpose().array().max(1e-300);
-  light.intensity = along / squared;
-  return (along.square() / squared).sum();
+  return IntensityGain(observations).fit(column, light);
 }
 
 std::vector<Eigen::Vector3d> places_in_front(const LightResponse& response, const std::vector<std::size_t>& receivers,
@@ -108,13 +128,14 @@ std::vector<Eigen::Vector3d> places_in_front(const LightResponse& response, cons
 LightEstimates propose_insertions(const LightResponse& response, const Observations& observations,
                                   const LightEstimates& lights) {
   const Observations residual = less(observations, response, lights);
+  const IntensityGain explains(residual);
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
   std::vector<Insertion> insertions;
   for (float t = kFarthest; t > kNearest; t /= kStep) {
     const std::vector<Eigen::Vector3d> places =
-        most_promising(response, residual, places_in_front(response, darkest, t * response.grid().region.diagonal()));
+        most_promising(response, explains, places_in_front(response, darkest, t * response.grid().region.diagonal()));
     const std::vector<Column> columns = direct_columns(response, places);
-    BestInsertion in_front(residual);
+    BestInsertion in_front(explains);
     for (std::size_t j = 0; j < places.size(); ++j) {
       in_front.consider({places[j], Eigen::Array3d::Ones()}, columns[j]);
     }
@@ -123,7 +144,7 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
       light.correction = -response.interpolated_indirect(light.position);
     }
   }
-  BestInsertion on_grid(residual);
+  BestInsertion on_grid(explains);
   const std::vector<Vec3f>& grid = response.grid().positions;
   const std::vector<std::size_t>& lights_of_grid = response.grid_lights_near_places();
   std::vector<Column> grid_columns(lights_of_grid.size());

@@ -142,6 +142,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   const LightCountOptions count_options{options.max_lights - already,
                                         std::max(0, options.exact_lights - already),
                                         options.time_limit,
+                                        search.transport_error,
                                         &search.exact,
                                         search.held_out,
                                         earlier_sets(options)};

@@ -32,6 +32,7 @@ struct JointSearch {
   const Observations& searched;  // no receiver hides the light of all others
   const Observations& judged;    // as the objective judges them
   const Observations& reported;  // as (3.6) judges them
+  double transport_error;        // of interpolated indirect light, relative
   const HeldOut* held_out;       // absent where lights beside surfaces were found, and without noise
 };
 

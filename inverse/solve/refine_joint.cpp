@@ -41,6 +41,12 @@ class IlluminationResiduals final : public ceres::CostFunction {
     return true;
   }
 
+  // The best ones of lights that stand there.
+  const std::vector<Eigen::Array3d>& intensities(const double* parameters) const {
+    move_to(parameters);
+    return fit_.intensity;
+  }
+
  private:
   // Ceres asks for the Jacobian where it has asked for the residuals alone before, wherever a step led downwards:
   // gradients come with the rays that were traced for the latter.
@@ -214,13 +220,16 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   ceres::Problem problem;
   double* const parameters = positions.front().data();
   problem.AddParameterBlock(parameters, int(3 * start.size()), new AllowedPositions(response.places(), start.size()));
-  problem.AddResidualBlock(new IlluminationResiduals(response, observations, start), nullptr, parameters);
+  auto* const residuals = new IlluminationResiduals(response, observations, start);  // owned by the problem
+  problem.AddResidualBlock(residuals, nullptr, parameters);
   [[maybe_unused]] static const bool silent = silence_ceres();
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  for (std::size_t j = 0; j < start.size(); ++j) result.lights[j].position = positions[j];
-  refit_intensities(observations, evaluate_columns(response, result.lights, Evaluation::kTracedVisibility),
-                    result.lights);
+  const std::vector<Eigen::Array3d>& intensities = residuals->intensities(parameters);
+  for (std::size_t j = 0; j < start.size(); ++j) {
+    result.lights[j].position = positions[j];
+    result.lights[j].intensity = intensities[j];
+  }
   result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
   result.iterations = int(summary.iterations.size());
   result.termination = ceres::TerminationTypeToString(summary.termination_type);

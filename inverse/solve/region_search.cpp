@@ -140,7 +140,10 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* smaller, StageClock&
 }
 
 JointSearch RegionSearch::joint_search() const {
-  return {problem, basis.options, basis.control, response, *exact_, searched_, judged, reported, held_out_.get()};
+  return {problem,        basis.options, basis.control,
+          response,       *exact_,       searched_,
+          judged,         reported,      transport.cache.indirect_relative_error,
+          held_out_.get()};
 }
 
 std::optional<Box3f> RegionSearch::wider_region() const {

@@ -217,6 +217,12 @@ std::vector<Lanes> from_gather_points(const GatherOperator& gather, const std::v
   return result;
 }
 
+// A quad takes a third of the time of a block.
+std::size_t lights_at_once(std::size_t count) {
+  constexpr std::size_t kQuad = LightQuad::kLanes;
+  return std::min<std::size_t>(count, count <= 2 * kQuad ? kQuad : kLightBlock);
+}
+
 template <class Lanes>
 void append_lanes(const std::vector<Lanes>& illumination, std::size_t count, std::vector<std::vector<Vec3f>>& all) {
   for (std::size_t l = 0; l < count; ++l) {
@@ -303,16 +309,17 @@ std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const Gat
 std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& tracer, const GatherOperator& gather,
                                                                std::span<const Vec3f> lights) {
   std::vector<std::vector<Vec3f>> all;
-  for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
-    const auto some = lights.subspan(first, std::min<std::size_t>(kLightBlock, lights.size() - first));
+  while (!lights.empty()) {
+    const auto some = lights.first(lights_at_once(lights.size()));
     if (some.size() == 1) {
       append_lanes(from_gather_points(gather, direct_at_gather_points<OneLight>(tracer, gather, some)), 1, all);
-    } else if (some.size() <= LightQuad::kLanes) {  // a third of the time of a block
+    } else if (some.size() <= LightQuad::kLanes) {
       append_lanes(from_gather_points(gather, direct_at_gather_points<LightQuad>(tracer, gather, some)), some.size(),
                    all);
     } else {
       append_lanes(indirect_illumination(tracer, gather, some), some.size(), all);
     }
+    lights = lights.subspan(some.size());
   }
   return all;
 }

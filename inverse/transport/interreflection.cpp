@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "renderer/core/control.h"
+#include "renderer/core/cpu_dispatch.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -67,18 +68,32 @@ class StepSizes {
   bool first_ = true;
 };
 
+// Of some gather points.
 template <class Lanes>
-void take_step(const StepSizes& sizes, const Lanes& direct, const Lanes& kx, const Lanes& x, Lanes& d, Lanes& next) {
-  for (int c = 0; c < 3; ++c) {
-    const float momentum = sizes.momentum[c], gain = sizes.gain[c];
-    for (int l = 0; l < Lanes::kLanes; ++l) {
-      const float residual = direct.channel[c][l] + kx.channel[c][l] - x.channel[c][l];
-      const float step = momentum * d.channel[c][l] + gain * residual;
-      d.channel[c][l] = step;
-      next.channel[c][l] = x.channel[c][l] + step;
+struct Points {
+  const Lanes *direct, *kx, *x;
+  Lanes *d, *next;
+  std::size_t count;
+};
+
+template <class Lanes>
+[[gnu::always_inline]] inline void take_any_step(const StepSizes& sizes, const Points<Lanes>& at) {
+  for (std::size_t i = 0; i < at.count; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const float momentum = sizes.momentum[c], gain = sizes.gain[c];
+      for (int l = 0; l < Lanes::kLanes; ++l) {
+        const float residual = at.direct[i].channel[c][l] + at.kx[i].channel[c][l] - at.x[i].channel[c][l];
+        const float step = momentum * at.d[i].channel[c][l] + gain * residual;
+        at.d[i].channel[c][l] = step;
+        at.next[i].channel[c][l] = at.x[i].channel[c][l] + step;
+      }
     }
   }
 }
+
+CHIARO_DISPATCH void take_step(const StepSizes& sizes, const Points<LightBlock>& at) { take_any_step(sizes, at); }
+CHIARO_DISPATCH void take_step(const StepSizes& sizes, const Points<LightQuad>& at) { take_any_step(sizes, at); }
+void take_step(const StepSizes& sizes, const Points<OneLight>& at) { take_any_step(sizes, at); }
 
 template <class Lanes>
 std::vector<Lanes> all_bounces(const Interreflection& k, const std::vector<Lanes>& direct) {
@@ -91,9 +106,7 @@ std::vector<Lanes> all_bounces(const Interreflection& k, const std::vector<Lanes
       const std::size_t first = chunk * kRows, count = std::min(kRows, x.size() - first);
       std::array<Lanes, kRows> kx;
       multiply_rows(k.one_bounce, first, x, std::span<Lanes>(kx.data(), count));
-      for (std::size_t i = 0; i < count; ++i) {
-        take_step(sizes, direct[first + i], kx[i], x[first + i], d[first + i], next[first + i]);
-      }
+      take_step(sizes, Points<Lanes>{&direct[first], kx.data(), &x[first], &d[first], &next[first], count});
     });
     std::swap(x, next);
   }

@@ -166,10 +166,12 @@ Column LightResponse::direct(const Vector3d& position) const {
   return column;
 }
 
-Column LightResponse::unoccluded(const Vector3d& position) const {
-  Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
-  add_direct(position, std::vector<double>(receivers_.size(), 1), column);
-  return column;
+Eigen::VectorXd LightResponse::unoccluded(const Vector3d& position) const {
+  Eigen::VectorXd grey(Eigen::Index(receivers_.size()));
+  for (std::size_t i = 0; i < receivers_.size(); ++i) {
+    grey[Eigen::Index(i)] = double(unoccluded_illumination(receivers_[i], to_vec3f(position)));
+  }
+  return grey;
 }
 
 Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) const {

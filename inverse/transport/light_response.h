@@ -50,9 +50,9 @@ class LightResponse {
   // Positions outside the grid's region take the indirect part of the nearest point of its border.
   Column evaluate(const UnityLight& light, Evaluation evaluation) const;
   ColumnWithGradient evaluate_with_gradient(const UnityLight& light, Evaluation evaluation) const;
-  // The direct part alone, visibility traced; as if nothing were in the way; the indirect part alone.
+  // The direct part alone, visibility traced; as if nothing were in the way, of any channel; the indirect part alone.
   Column direct(const Eigen::Vector3d& position) const;
-  Column unoccluded(const Eigen::Vector3d& position) const;
+  Eigen::VectorXd unoccluded(const Eigen::Vector3d& position) const;
   Column interpolated_indirect(const Eigen::Vector3d& position) const;
   // Whole columns interpolated, direct light and all, as published.
   Column interpolated_columns(const Eigen::Vector3d& position) const;

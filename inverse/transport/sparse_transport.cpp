@@ -3,13 +3,7 @@
 #include <algorithm>
 
 #include "renderer/core/control.h"
-
-// Wider vector units where the CPU has them, chosen at run time. Sanitizers cannot instrument the resolvers.
-#if defined(__x86_64__) && !defined(CHIARO_SANITIZED)
-#define CHIARO_DISPATCH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define CHIARO_DISPATCH
-#endif
+#include "renderer/core/cpu_dispatch.h"
 
 namespace chiaro::inverse {
 namespace {

@@ -2,14 +2,8 @@
 
 #include <algorithm>
 
+#include "renderer/core/cpu_dispatch.h"
 #include "renderer/trace/light_sampling.h"
-
-// For wider vector units too, chosen at run time; without contraction (CMakeLists.txt), so that all give the same bits.
-#if defined(__x86_64__) && !defined(CHIARO_SANITIZED)
-#define CHIARO_DISPATCH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define CHIARO_DISPATCH
-#endif
 
 namespace chiaro::renderer {
 namespace {

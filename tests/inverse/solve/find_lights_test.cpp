@@ -8,6 +8,7 @@
 #include "inverse/solve/light_distribution.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/optimize_simplex.h"
+#include "inverse/solve/pair_of_lights.h"
 #include "inverse/solve/refine_joint.h"
 #include "inverse/solve/settle_positions.h"
 #include "inverse/solve/split_lights.h"
@@ -256,6 +257,27 @@ TEST(SplitLights, TriesTheLightThatStandsForTwoFirst) {
   const auto splits = propose_splits(problem.response(), problem.observations(), merged.lights, 1);
   ASSERT_EQ(splits.size(), 1U);
   EXPECT_LT((splits[0][0].position - merged.lights[0].position).norm(), 1e-12);
+}
+
+TEST(ProposePairs, TakeTwoLightsFarApartForTheOneThatTheyPassedFor) {
+  const LightEstimates known{
+      {{1.0, 1.5, 1.2}, {12, 4, 6}}, {{2.4, 1.7, 2.4}, {8, 9, 12}}, {{3.3, 2.4, 0.6}, {9, 9, 9}}};
+  const DirectProblem problem(known);
+  const JointRefinement merged =
+      refine_joint(problem.response(), problem.observations(),
+                   {{known[2].position, Array3d::Ones()}, {{1.7, 1.6, 1.8}, Array3d::Ones()}}, {.max_iterations = 15});
+  const auto pairs = propose_pairs(problem.response(), problem.observations(), merged.lights, 5);
+  ASSERT_EQ(pairs.size(), 2U);
+  ASSERT_EQ(pairs[0].size(), 3U);
+  EXPECT_LT((pairs[0][0].position - merged.lights[0].position).norm(), 1e-12);
+  const auto columns = evaluate_columns(problem.response(), pairs[0], Evaluation::kTracedVisibility);
+  EXPECT_LT(relative_error(problem.observations(),
+                           total_illumination(columns, pairs[0], problem.observations().wanted.rows())),
+            merged.error);
+  const JointRefinement three = refine_joint(problem.response(), problem.observations(), pairs[0]);
+  EXPECT_LT(farthest_from(known, positions_of(three.lights)), 0.01);
+  EXPECT_EQ(propose_pairs(problem.response(), problem.observations(), merged.lights, 1).size(), 1U);
+  EXPECT_TRUE(propose_pairs(problem.response(), problem.observations(), {}, 1).empty());
 }
 
 TEST(LightsBesideSurfaces, AreNoneWhereNoneOutshinesTheRest) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "inverse/solve/exact_indirect.h"
+
+namespace chiaro::inverse {
+
+// Exact indirect light of the lights of one search, computed once wherever several of them come to stand.
+class KnownCorrections {
+ public:
+  // Keeps references.
+  KnownCorrections(const ExactIndirect& exact, const LightResponse& response);
+
+  // Each has the correction of where it stands, or of so near a place that it hardly is another.
+  bool has_all(const LightEstimates& lights) const;
+  // Gives them those that they lack.
+  void correct(std::vector<LightEstimates>& sets);
+
+ private:
+  bool is_corrected(const LightEstimate& light) const;
+  bool take_known(LightEstimate& light) const;
+
+  const ExactIndirect& exact_;
+  const LightResponse& response_;
+  double near_;           // metres
+  LightEstimates known_;  // with their corrections
+};
+
+}  // namespace chiaro::inverse
