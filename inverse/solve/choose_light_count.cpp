@@ -88,18 +88,11 @@ class Search {
 
   // Refines them and keeps the best, if none of its size was better, without the lights that went out.
   void consider(std::vector<LightEstimates> starts, const JointRefinementOptions& how = kSearching) {
-    if (starts.size() > kFinalists) starts = best_of(refine_all(starts, kFirstSteps), kFinalists);
+    if (starts.size() > kFinalists) starts = best_sets(refine_all(starts, kFirstSteps), kFinalists);
     std::vector<JointRefinement> refined = refine_all(starts, how);
     const auto best = std::min_element(refined.begin(), refined.end(),
                                        [](const auto& a, const auto& b) { return a.error < b.error; });
     if (best != refined.end()) keep_exactly({*best}, how);
-  }
-
-  static std::vector<LightEstimates> best_of(std::vector<JointRefinement> refined, std::size_t count) {
-    std::stable_sort(refined.begin(), refined.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
-    std::vector<LightEstimates> best;
-    for (std::size_t k = 0; k < std::min(count, refined.size()); ++k) best.push_back(std::move(refined[k].lights));
-    return best;
   }
 
   // Between the lights of a grid indirect light is known less well than targets are: sets that leave little are refined
@@ -260,11 +253,7 @@ class Search {
     for (std::size_t without = 0; without < all.size(); ++without) {
       candidates.push_back(refitted_without(all, columns, without));
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
-    std::vector<LightEstimates> sets;
-    for (std::size_t k = 0; k < std::min(most, candidates.size()); ++k) sets.push_back(candidates[k].lights);
-    return sets;
+    return best_sets(std::move(candidates), most);
   }
 
   Candidate refitted_without(LightEstimates lights, std::vector<Column> columns, std::size_t without) const {

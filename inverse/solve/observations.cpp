@@ -125,7 +125,7 @@ double relative_error(const Observations& observations, const Column& illuminati
   return norm / observations.target_norm;
 }
 
-IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns) {
+std::array<WeightedSystem, 3> weighted_systems(const Observations& observations, const std::vector<Column>& columns) {
   std::array<WeightedSystem, 3> channels;
   renderer::parallel_for(3, [&](std::size_t channel) {
     const auto c = Eigen::Index(channel);
@@ -136,7 +136,11 @@ IntensityFit fit_intensities(const Observations& observations, const std::vector
     }
     system.b = observations.sqrt_weight.cwiseProduct(observations.wanted.col(c));
   });
-  return fit_intensities(channels, observations.rules);
+  return channels;
+}
+
+IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns) {
+  return fit_intensities(weighted_systems(observations, columns), observations.rules);
 }
 
 double refit_intensities(const Observations& observations, const std::vector<Column>& columns, LightEstimates& lights) {

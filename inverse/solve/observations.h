@@ -1,6 +1,7 @@
 #pragma once
 // What a solve fits: wanted illumination at the important vertices, and lights that may produce it.
 
+#include <algorithm>
 #include <vector>
 
 #include "inverse/solve/intensity_rules.h"
@@ -70,6 +71,9 @@ Column total_illumination(const std::vector<Column>& columns, const LightEstimat
 // D(I(p), Ψ) of eq. (3.6) over the important vertices.
 double relative_error(const Observations& observations, const Column& illumination);
 
+// Columns and what is wanted of them in each channel, weighted as the observations have it.
+std::array<WeightedSystem, 3> weighted_systems(const Observations& observations, const std::vector<Column>& columns);
+
 // The intensities that fit fixed columns best, by the observations' rules.
 IntensityFit fit_intensities(const Observations& observations, const std::vector<Column>& columns);
 
@@ -79,6 +83,15 @@ double effective_part(const Eigen::VectorXd& energy, const Eigen::VectorXd& stan
 
 // Gives the lights the intensities that fit their columns best. Returns the error that is left, (3.6).
 double refit_intensities(const Observations& observations, const std::vector<Column>& columns, LightEstimates& lights);
+
+// Of sets of lights with their errors, those of the least errors: at most so many, best first.
+template <class SetWithError>
+std::vector<LightEstimates> best_sets(std::vector<SetWithError> sets, std::size_t most) {
+  std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
+  std::vector<LightEstimates> best;
+  for (std::size_t k = 0; k < std::min(most, sets.size()); ++k) best.push_back(std::move(sets[k].lights));
+  return best;
+}
 
 // Column of a light with its correction.
 Column evaluate_column(const LightResponse& response, const LightEstimate& light, Evaluation evaluation);

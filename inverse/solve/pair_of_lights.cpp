@@ -46,17 +46,12 @@ struct Normal {
   }
 };
 
-std::array<Normal, 3> normal_equations(const std::vector<Column>& columns, const Observations& wanted) {
-  std::array<Normal, 3> channels;
+std::array<Normal, 3> normal_equations(const std::array<WeightedSystem, 3>& channels) {
+  std::array<Normal, 3> normal;
   for (int c = 0; c < 3; ++c) {
-    Eigen::MatrixXd weighted(wanted.wanted.rows(), Eigen::Index(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      weighted.col(Eigen::Index(k)) = wanted.sqrt_weight.cwiseProduct(columns[k].col(c));
-    }
-    channels[c].gram = weighted.transpose() * weighted;
-    channels[c].pull = weighted.transpose() * wanted.sqrt_weight.cwiseProduct(wanted.wanted.col(c));
+    normal[c] = {channels[c].a.transpose() * channels[c].a, channels[c].a.transpose() * channels[c].b};
   }
-  return channels;
+  return normal;
 }
 
 std::pair<Eigen::Index, Eigen::Index> best_pair(const std::array<Normal, 3>& channels) {
@@ -87,7 +82,7 @@ Proposal with_pair(const LightResponse& response, const Observations& observatio
   for (std::size_t j = 0; j < lights.size(); ++j) {
     if (j != replaced) alone.wanted -= columns[j] * lights[j].intensity.matrix().asDiagonal();
   }
-  const auto [a, b] = best_pair(normal_equations(grid, alone));
+  const auto [a, b] = best_pair(normal_equations(weighted_systems(alone, grid)));
   const auto at = [&](Eigen::Index k) {
     return LightEstimate{to_eigen(response.grid().positions[candidates[std::size_t(k)]]), Eigen::Array3d::Ones()};
   };
@@ -108,12 +103,7 @@ std::vector<LightEstimates> propose_pairs(const LightResponse& response, const O
   renderer::parallel_for(lights.size(),
                          [&](std::size_t j) { proposals[j] = with_pair(response, observations, lights, columns, j); });
   std::erase_if(proposals, [](const Proposal& p) { return p.lights.empty(); });
-  std::stable_sort(proposals.begin(), proposals.end(),
-                   [](const Proposal& a, const Proposal& b) { return a.error < b.error; });
-  proposals.resize(std::min(proposals.size(), most));
-  std::vector<LightEstimates> sets;
-  for (Proposal& proposal : proposals) sets.push_back(std::move(proposal.lights));
-  return sets;
+  return best_sets(std::move(proposals), most);
 }
 
 }  // namespace chiaro::inverse

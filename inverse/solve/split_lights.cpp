@@ -78,11 +78,7 @@ std::vector<LightEstimates> propose_splits(const LightResponse& response, const 
   renderer::parallel_for(lights.size(), [&](std::size_t j) {
     splits[j] = split_light(response, observations, lights, columns, weighted, j);
   });
-  std::stable_sort(splits.begin(), splits.end(), [](const Split& a, const Split& b) { return a.error < b.error; });
-  splits.resize(std::min(splits.size(), most));
-  std::vector<LightEstimates> sets;
-  for (Split& split : splits) sets.push_back(std::move(split.lights));
-  return sets;
+  return best_sets(std::move(splits), most);
 }
 
 }  // namespace chiaro::inverse
