@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "inverse/solve/pooled_errors.h"
+
 namespace chiaro::inverse {
 
 ReceiverDraw draw_evenly(const Target& target, std::size_t most) {
@@ -36,6 +38,7 @@ Observations observe_target(const Target& target, const ReceiverDraw& draw, cons
   o.sqrt_weight.resize(count);
   o.stands_for.resize(count);
   o.standard_error = Eigen::VectorXd::Zero(count);
+  const std::vector<float> standard_error = pooled_standard_errors(target, draw.chosen);
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::size_t receiver = draw.chosen[std::size_t(i)];
     for (int c = 0; c < 3; ++c) {
@@ -44,7 +47,7 @@ Observations observe_target(const Target& target, const ReceiverDraw& draw, cons
     }
     o.sqrt_weight[i] = std::sqrt(double(target.weight[receiver]));
     o.stands_for[i] = 1 / draw.probability[std::size_t(i)];
-    if (!target.standard_error.empty()) o.standard_error[i] = double(target.standard_error[receiver]);
+    if (!standard_error.empty()) o.standard_error[i] = double(standard_error[std::size_t(i)]);
   }
   o.measure_target();
   return o;

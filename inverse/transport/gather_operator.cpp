@@ -4,6 +4,7 @@
 #include <memory>
 #include <numeric>
 
+#include "inverse/transport/bright_spot.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/nearest_gather_point.h"
 #include "renderer/core/sampler.h"
@@ -89,12 +90,6 @@ std::vector<SurfaceSample> with_hidden(std::vector<SurfaceSample> points, const 
   const std::vector<SurfaceSample> more = every_nth(hidden, count);
   points.insert(points.end(), more.begin(), more.end());
   return points;
-}
-
-// Mean distance between neighbours if the points lay evenly on a box of the scene's size.
-float typical_spacing(const RayTracer& tracer, std::size_t points) {
-  const Vec3f e = tracer.bounds().extent();
-  return std::sqrt(2 * (e.x * e.y + e.y * e.z + e.z * e.x) / float(std::max<std::size_t>(1, points)));
 }
 
 // Samples that see no gather point are of no cell.
@@ -223,14 +218,6 @@ std::size_t lights_at_once(std::size_t count) {
   return std::min<std::size_t>(count, count <= 2 * kQuad ? kQuad : kLightBlock);
 }
 
-template <class Lanes>
-void append_lanes(const std::vector<Lanes>& illumination, std::size_t count, std::vector<std::vector<Vec3f>>& all) {
-  for (std::size_t l = 0; l < count; ++l) {
-    std::vector<Vec3f>& of_light = all.emplace_back();
-    for (const Lanes& at : illumination) of_light.push_back({at.channel[0][l], at.channel[1][l], at.channel[2][l]});
-  }
-}
-
 // In parallel: body(first, last) for parts of 0 … count − 1.
 template <class Body>
 void for_each_chunk(std::size_t count, const Body& body) {
@@ -254,6 +241,21 @@ std::vector<Lanes> direct_at_gather_points(const RayTracer& tracer, const Gather
   return direct;
 }
 
+template <class Lanes>
+void append_indirect(const RayTracer& tracer, const GatherOperator& gather, std::span<const Vec3f> lights,
+                     std::vector<std::vector<Vec3f>>& all) {
+  const auto direct = direct_at_gather_points<Lanes>(tracer, gather, lights);
+  const std::vector<Lanes> indirect = from_gather_points(gather, direct);
+  std::vector<float> of_light(direct.size());
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    for (std::size_t i = 0; i < direct.size(); ++i) of_light[i] = direct[i].channel[0][l];
+    std::vector<Vec3f>& sum = all.emplace_back(change_by_bright_spot(tracer, gather, lights[l], of_light));
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      for (int c = 0; c < 3; ++c) sum[i][c] += indirect[i].channel[c][l];
+    }
+  }
+}
+
 }  // namespace
 
 GatherOperator make_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
@@ -265,7 +267,7 @@ GatherOperator make_gather_points(const RayTracer& tracer, std::span<const Surfa
   const auto all = trace_gather_paths(tracer, receivers, kPathsPerGatherPoint * wanted, options.seed + 1);
   gather.points = every_nth(all, wanted);
   if (gather.points.empty()) return gather;
-  const float spacing = typical_spacing(tracer, gather.points.size());
+  const float spacing = typical_spacing(tracer.bounds(), gather.points.size());
   gather.points = with_hidden(gather.points, all, {tracer, gather.points, spacing});
   gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
   fill_cells(gather, all, *gather.nearest);
@@ -285,6 +287,8 @@ SparseTransport trace_receiver_rows(const RayTracer& tracer, const GatherOperato
 GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
                                     const GatherOptions& options, const renderer::Control& control) {
   GatherOperator gather = make_gather_points(tracer, receivers, options, control);
+  gather.receivers.assign(receivers.begin(), receivers.end());
+  gather.rays_per_receiver = options.samples;
   if (gather.points.empty()) {
     gather.receiver_from_point = SparseTransport::from_rows({receivers.size(), std::vector<SparseTransport::Entry>{}});
     return gather;
@@ -312,12 +316,11 @@ std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& 
   while (!lights.empty()) {
     const auto some = lights.first(lights_at_once(lights.size()));
     if (some.size() == 1) {
-      append_lanes(from_gather_points(gather, direct_at_gather_points<OneLight>(tracer, gather, some)), 1, all);
+      append_indirect<OneLight>(tracer, gather, some, all);
     } else if (some.size() <= LightQuad::kLanes) {
-      append_lanes(from_gather_points(gather, direct_at_gather_points<LightQuad>(tracer, gather, some)), some.size(),
-                   all);
+      append_indirect<LightQuad>(tracer, gather, some, all);
     } else {
-      append_lanes(indirect_illumination(tracer, gather, some), some.size(), all);
+      append_indirect<LightBlock>(tracer, gather, some, all);
     }
     lights = lights.subspan(some.size());
   }

@@ -31,9 +31,11 @@ struct GatherOperator {
   // Samples of the cell of point i: cell_samples[cell_start[i]] … cell_samples[cell_start[i + 1] − 1].
   std::vector<std::size_t> cell_start;
   std::vector<renderer::SurfaceSample> cell_samples;
-  std::vector<float> cell_radius;       // metres, root mean square over the cell
-  Interreflection interreflection;      // K_gg
-  SparseTransport receiver_from_point;  // K_rg; without rows where they are traced in parts
+  std::vector<float> cell_radius;                  // metres, root mean square over the cell
+  Interreflection interreflection;                 // K_gg
+  SparseTransport receiver_from_point;             // K_rg; without rows where they are traced in parts
+  std::vector<renderer::SurfaceSample> receivers;  // of these rows
+  int rays_per_receiver = 0;
   std::shared_ptr<const NearestGatherPoint> nearest;
   int bounces = -1;  // as TraceOptions
   std::size_t ray_count = 0;
@@ -69,7 +71,8 @@ std::vector<LightBlock> illumination_of_gather_points(const renderer::RayTracer&
 std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,
                                               std::span<const renderer::Vec3f> lights);
 
-// The same of any number of lights, by light and receiver.
+// The same of any number of lights, by light and receiver, with what the lights' own rays find of the spots close to
+// them (bright_spot.h).
 std::vector<std::vector<renderer::Vec3f>> indirect_illumination_by_light(const renderer::RayTracer& tracer,
                                                                          const GatherOperator& gather,
                                                                          std::span<const renderer::Vec3f> lights);

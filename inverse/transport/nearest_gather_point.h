@@ -2,11 +2,11 @@
 // Which gather point stands for a spot of the surface: the nearest in position and orientation that is seen from there,
 // a little above the surface, so that no light leaks below what stands or lies on a lit surface, or into solids.
 
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include "renderer/trace/trace_illumination.h"
+#include "inverse/transport/sample_tree.h"
+#include "renderer/trace/ray_tracer.h"
 
 namespace chiaro::inverse {
 
@@ -14,7 +14,6 @@ class NearestGatherPoint {
  public:
   // spacing: metres between neighbours, about. Keeps a reference to the tracer.
   NearestGatherPoint(const renderer::RayTracer& tracer, std::vector<renderer::SurfaceSample> points, float spacing);
-  ~NearestGatherPoint();
 
   // Its index; nothing where none of the nearest is seen.
   std::optional<std::uint32_t> find_seen(const renderer::SurfaceSample& at) const;
@@ -22,9 +21,8 @@ class NearestGatherPoint {
   std::uint32_t find_nearest(const renderer::SurfaceSample& at) const;
 
  private:
-  struct Tree;
   const renderer::RayTracer& tracer_;
-  std::unique_ptr<const Tree> tree_;
+  SampleTree tree_;
 };
 
 }  // namespace chiaro::inverse
