@@ -27,6 +27,7 @@ constexpr double kNoise = 2;      // times the noise, or less: there is nothing 
 constexpr double kKnee = 1.25;    // further lights must lower an error that is not noise by this factor
 constexpr double kNearNoise = 5;  // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
+constexpr double kStill = 5e-4;        // of the region's diagonal: indirect light hardly changes
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
 constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
 constexpr std::size_t kMostSplits = 3, kMostPairs = 3;
@@ -46,7 +47,9 @@ class Search {
   Search(const LightResponse& response, const Observations& observations, const LightTree& tree,
          const LightCountOptions& options)
       : response_(response), observations_(observations), tree_(tree), options_(options), start_(Clock::now()) {
-    if (options.exact != nullptr) corrections_.emplace(*options.exact, response);
+    const double still = kStill * double(response.grid().region.diagonal());
+    if (options.exact != nullptr) corrections_.emplace(*options.exact, response, still);
+    if (options.held_out != nullptr) held_out_.emplace(*options.held_out, still);
   }
 
   LightCountResult run() {
@@ -150,8 +153,8 @@ class Search {
     return size;
   }
 
-  const Eigen::VectorXd& held_out_residuals(Candidate& candidate) const {
-    if (candidate.held_out.size() == 0) candidate.held_out = options_.held_out->residuals(candidate.lights);
+  const Eigen::VectorXd& held_out_residuals(Candidate& candidate) {
+    if (candidate.held_out.size() == 0) candidate.held_out = held_out_->of(candidate.lights);
     return candidate.held_out;
   }
 
@@ -159,7 +162,7 @@ class Search {
   // receivers clearly see.
   std::size_t best_size() {
     std::size_t size = knee();
-    if (options_.held_out == nullptr || least_error() > kNearNoise * observations_.noise) return size;
+    if (!held_out_ || least_error() > kNearNoise * observations_.noise) return size;
     for (std::size_t larger = size + 1; larger < best_.size(); ++larger) {
       if (!(best_[larger].error < best_[size].error)) continue;
       if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]))) size = larger;
@@ -282,6 +285,7 @@ class Search {
   Clock::time_point start_;
   std::vector<Candidate> best_{1};  // by number of lights
   std::optional<KnownCorrections> corrections_;
+  std::optional<HeldOutResiduals> held_out_;
   bool cuts_are_enough_ = false;  // larger ones than the best explain no more
   int refinements_ = 0;
   bool out_of_time_ = false;

@@ -8,8 +8,9 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kSamplesFactor = 4;                    // gather rays per receiver, over those of the bake
-constexpr int kPointsPerSample = 16;                 // gather points over rays
+constexpr int kSamplesFactor = 4;     // gather rays per receiver, over those of the bake
+constexpr int kPointsPerSample = 16;  // gather points over rays
+constexpr int kPathsPerPoint = 16, kRaysPerPoint = 32;
 constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …
 constexpr int kLeastPaths = 128, kMostPaths = 8192;  // … per light and receiver, at most …
 constexpr int kFirstPart = 8;                        // … of which this part tells how many it takes …
@@ -45,6 +46,8 @@ std::vector<Vec3f> without_direct(const LightResponse& response, const std::vect
 GatherOptions gather_options(const BakeSettings& settings) {
   return {.samples = kSamplesFactor * settings.samples,
           .points_per_sample = kPointsPerSample,
+          .paths_per_point = kPathsPerPoint,
+          .rays_per_point = kRaysPerPoint,
           .bounces = settings.bounces,
           .seed = settings.seed};
 }

@@ -118,24 +118,23 @@ class FillingUp {
     return nearest;
   }
 
-  // Of the brightest light's colour, which the rules allow.
-  static void light_the_dark(LightEstimates& lights) {
-    for (LightEstimate& light : lights) {
-      if ((light.intensity > 0).any()) continue;
-      const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
-        return a.intensity.maxCoeff() < b.intensity.maxCoeff();
-      });
-      light.intensity = kShare * brightest->intensity;
-      brightest->intensity *= 1 - kShare;
-    }
-  }
-
   const LightResponse& response_;
   const Observations& observations_;
   std::vector<Vector3d> candidates_;
 };
 
 }  // namespace
+
+void light_the_dark(LightEstimates& lights) {
+  for (LightEstimate& light : lights) {
+    if ((light.intensity > 0).any()) continue;
+    const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
+      return a.intensity.maxCoeff() < b.intensity.maxCoeff();
+    });
+    light.intensity = kShare * brightest->intensity;
+    brightest->intensity *= 1 - kShare;
+  }
+}
 
 LightEstimates filled_up(const LightResponse& response, const Observations& observations, LightEstimates lights,
                          std::size_t wanted) {

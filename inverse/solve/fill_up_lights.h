@@ -10,4 +10,7 @@ namespace chiaro::inverse {
 LightEstimates filled_up(const LightResponse& response, const Observations& observations, LightEstimates lights,
                          std::size_t wanted);
 
+// Gives each dark light a small part of the brightest, whose colour the rules allow.
+void light_the_dark(LightEstimates& lights);
+
 }  // namespace chiaro::inverse

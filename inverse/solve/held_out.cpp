@@ -6,7 +6,7 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kSignificant = 3;  // standard errors
-constexpr int kPointsPerSample = 32;
+constexpr int kPointsPerSample = 32, kPathsPerPoint = 16, kRaysPerPoint = 32;
 
 TransportCache cache_of_nothing(std::size_t receivers) {
   TransportCache cache;
@@ -23,19 +23,56 @@ HeldOut::HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::
       gather_(make_gather_operator(tracer, receivers,
                                    {.samples = settings.samples,
                                     .points_per_sample = kPointsPerSample,
+                                    .paths_per_point = kPathsPerPoint,
+                                    .rays_per_point = kRaysPerPoint,
                                     .bounces = settings.bounces,
                                     .seed = settings.seed})),
       nothing_(cache_of_nothing(receivers.size())),
       response_(tracer, receivers, nothing_) {}
 
+std::vector<Column> HeldOut::indirect(const LightEstimates& lights) const {
+  std::vector<Column> columns;
+  for (const auto& light : indirect_illumination_by_light(tracer_, gather_, light_positions(lights))) {
+    columns.push_back(column_of(light));
+  }
+  return columns;
+}
+
 Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights) const {
-  const auto indirect = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));
+  const std::vector<Column> columns = indirect(lights);
+  std::vector<const Column*> each;
+  for (const Column& column : columns) each.push_back(&column);
+  return residuals(lights, each);
+}
+
+Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const {
   Column left = -observations_.wanted;
   for (std::size_t j = 0; j < lights.size(); ++j) {
-    const Column unity = response_.direct(lights[j].position) + column_of(indirect[j]);
-    left += unity * lights[j].intensity.matrix().asDiagonal();
+    left += (response_.direct(lights[j].position) + *indirect[j]) * lights[j].intensity.matrix().asDiagonal();
   }
   return (observations_.sqrt_weight.asDiagonal() * left).rowwise().norm();
+}
+
+Eigen::VectorXd HeldOutResiduals::of(const LightEstimates& lights) {
+  LightEstimates unknown;
+  for (const LightEstimate& light : lights) {
+    if (find(light.position) == nullptr) unknown.push_back(light);
+  }
+  std::vector<Column> columns = held_out_.indirect(unknown);
+  for (std::size_t j = 0; j < unknown.size(); ++j) known_.push_back({unknown[j].position, std::move(columns[j])});
+  std::vector<const Column*> indirect;
+  for (const LightEstimate& light : lights) indirect.push_back(find(light.position));
+  return held_out_.residuals(lights, indirect);
+}
+
+const Column* HeldOutResiduals::find(const Eigen::Vector3d& position) const {
+  const Known* nearest = nullptr;
+  double least = near_;
+  for (const Known& known : known_) {
+    const double distance = (known.position - position).norm();
+    if (distance <= least) least = distance, nearest = &known;
+  }
+  return nearest == nullptr ? nullptr : &nearest->indirect;
 }
 
 bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {

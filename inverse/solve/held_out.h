@@ -1,5 +1,7 @@
 #pragma once
 
+#include <deque>
+
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -15,6 +17,9 @@ class HeldOut {
 
   // Weighted, of each receiver, by exact illumination. Their squares would be those of a few receivers beside lights.
   Eigen::VectorXd residuals(const LightEstimates& lights) const;
+  // The same with indirect light, at 1 cd, that is known already.
+  Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
+  std::vector<Column> indirect(const LightEstimates& lights) const;
 
  private:
   const renderer::RayTracer& tracer_;
@@ -22,6 +27,26 @@ class HeldOut {
   GatherOperator gather_;
   TransportCache nothing_;
   LightResponse response_;
+};
+
+// Residuals of the sets of one search: indirect light is computed once wherever several of their lights come to stand.
+class HeldOutResiduals {
+ public:
+  // near: metres to a place so near that indirect light hardly is another. Keeps a reference.
+  HeldOutResiduals(const HeldOut& held_out, double near) : held_out_(held_out), near_(near) {}
+
+  Eigen::VectorXd of(const LightEstimates& lights);
+
+ private:
+  struct Known {
+    Eigen::Vector3d position;
+    Column indirect;
+  };
+  const Column* find(const Eigen::Vector3d& position) const;
+
+  const HeldOut& held_out_;
+  double near_;
+  std::deque<Known> known_;
 };
 
 // Whether the second are smaller than chance makes them: a paired test of their mean, at three standard errors.

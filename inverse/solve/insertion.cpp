@@ -11,17 +11,17 @@ namespace {
 
 constexpr std::size_t kMostInsertions = 3;
 constexpr std::size_t kDarkest = 16;  // receivers in front of which a light is tried …
-constexpr std::size_t kTraced = 24;   // … of each distance, those that explain most if nothing is in the way, …
+constexpr std::size_t kTraced = 12;   // … of each distance, those that explain most if nothing is in the way, …
 constexpr float kFarthest = 0.05F;    // … from this part of the region's diagonal …
 constexpr float kNearest = 0.0005F;   // … down to this one …
-constexpr float kStep = 1.5F;         // … in these steps
+constexpr float kStep = 2.0F;         // … in these steps
 // Along the normal, and around it at 30 and at 60 degrees.
 constexpr Vec3f kDirections[] = {{0, 0, 1},           {.5F, 0, .87F},    {-.25F, .43F, .87F}, {-.25F, -.43F, .87F},
                                  {.87F, 0, .5F},      {.43F, .75F, .5F}, {-.43F, .75F, .5F},  {-.87F, 0, .5F},
                                  {-.43F, -.75F, .5F}, {.43F, -.75F, .5F}};
 
 struct Insertion {
-  double gain;
+  double gain = 0;
   LightEstimate light;
 };
 
@@ -51,25 +51,20 @@ class IntensityGain {
   Column pull_;
 };
 
-// The candidate so far that explains most, or none.
-class BestInsertion {
- public:
-  explicit BestInsertion(const IntensityGain& gain) : gain_(gain) {}
-
-  void consider(LightEstimate place, const Column& column) {
-    const double gain = gain_.fit(column, place);
-    if (gain > (best_ ? best_->gain : 0)) best_ = {gain, std::move(place)};
-  }
-  // True: there is one.
-  bool append_to(std::vector<Insertion>& insertions) const {
-    if (best_) insertions.push_back(*best_);
-    return best_.has_value();
-  }
-
- private:
-  const IntensityGain& gain_;
-  std::optional<Insertion> best_;
-};
+// Of these places the one that explains most by its column, and nothing where none explains anything.
+template <class ColumnAt>
+std::optional<Insertion> best_insertion(const IntensityGain& explains, const std::vector<Eigen::Vector3d>& places,
+                                        const ColumnAt& column_at) {
+  std::vector<Insertion> tried(places.size());
+  renderer::parallel_for(places.size(), [&](std::size_t j) {
+    tried[j].light = {places[j], Eigen::Array3d::Ones()};
+    tried[j].gain = explains.fit(column_at(j), tried[j].light);
+  });
+  const auto best =
+      std::max_element(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
+  if (best == tried.end() || !(best->gain > 0)) return std::nullopt;
+  return *best;
+}
 
 std::vector<std::size_t> darkest_receivers(const Observations& residual) {
   std::vector<std::pair<double, std::size_t>> lack;
@@ -82,13 +77,6 @@ std::vector<std::size_t> darkest_receivers(const Observations& residual) {
   std::vector<std::size_t> darkest;
   for (std::size_t k = 0; k < count; ++k) darkest.push_back(lack[k].second);
   return darkest;
-}
-
-// By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
-std::vector<Column> direct_columns(const LightResponse& response, const std::vector<Eigen::Vector3d>& places) {
-  std::vector<Column> columns(places.size());
-  renderer::parallel_for(places.size(), [&](std::size_t j) { columns[j] = response.direct(places[j]); });
-  return columns;
 }
 
 // Those from which most is explained if nothing is in the way.
@@ -134,26 +122,17 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
   for (float t = kFarthest; t > kNearest; t /= kStep) {
     const std::vector<Eigen::Vector3d> places =
         most_promising(response, explains, places_in_front(response, darkest, t * response.grid().region.diagonal()));
-    const std::vector<Column> columns = direct_columns(response, places);
-    BestInsertion in_front(explains);
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      in_front.consider({places[j], Eigen::Array3d::Ones()}, columns[j]);
-    }
-    if (in_front.append_to(insertions)) {
-      LightEstimate& light = insertions.back().light;
-      light.correction = -response.interpolated_indirect(light.position);
-    }
+    // By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
+    auto best = best_insertion(explains, places, [&](std::size_t j) { return response.direct(places[j]); });
+    if (!best) continue;
+    best->light.correction = -response.interpolated_indirect(best->light.position);
+    insertions.push_back(std::move(*best));
   }
-  BestInsertion on_grid(explains);
-  const std::vector<Vec3f>& grid = response.grid().positions;
-  const std::vector<std::size_t>& lights_of_grid = response.grid_lights_near_places();
-  std::vector<Column> grid_columns(lights_of_grid.size());
-  renderer::parallel_for(lights_of_grid.size(),
-                         [&](std::size_t k) { grid_columns[k] = response.grid_column(lights_of_grid[k]); });
-  for (std::size_t k = 0; k < lights_of_grid.size(); ++k) {
-    on_grid.consider({to_eigen(grid[lights_of_grid[k]]), Eigen::Array3d::Ones()}, grid_columns[k]);
-  }
-  on_grid.append_to(insertions);
+  const std::vector<std::size_t>& grid = response.grid_lights_near_places();
+  std::vector<Eigen::Vector3d> places;
+  for (const std::size_t light : grid) places.push_back(to_eigen(response.grid().positions[light]));
+  auto best = best_insertion(explains, places, [&](std::size_t j) { return response.grid_column(grid[j]); });
+  if (best) insertions.push_back(std::move(*best));
   std::stable_sort(insertions.begin(), insertions.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   LightEstimates proposals;
   for (std::size_t k = 0; k < std::min(insertions.size(), kMostInsertions); ++k)

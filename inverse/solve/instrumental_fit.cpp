@@ -38,32 +38,39 @@ Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Colum
   return observations.sqrt_weight.array() / (1 + (relative / scale).square());
 }
 
+// How direct light, which is grey, changes with each light's x, y, z, then with its intensity; weighted.
+Eigen::MatrixXd instruments_of(const std::vector<ColumnWithGradient>& direct, const Eigen::VectorXd& sqrt_weight) {
+  const auto n = Eigen::Index(direct.size());
+  Eigen::MatrixXd instruments(sqrt_weight.size(), 4 * n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const ColumnWithGradient& column = direct[std::size_t(j)];
+    for (int a = 0; a < 3; ++a) instruments.col(3 * j + a) = sqrt_weight.cwiseProduct(column.gradient[a].col(0));
+    instruments.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(0));
+  }
+  return instruments;
+}
+
 // What one channel says of its unknowns: x, y, z of each light, then the channel's intensity of each.
 struct ChannelSystem {
   Eigen::MatrixXd normal;
   Eigen::VectorXd gradient;
 };
 
-// Instruments are the derivatives of direct light.
-ChannelSystem channel_system(const std::vector<ColumnWithGradient>& direct, const std::vector<Column>& indirect,
-                             const LightEstimates& lights, const Column& residual, const Eigen::VectorXd& sqrt_weight,
-                             int channel) {
+ChannelSystem channel_system(const Eigen::MatrixXd& instruments, const Eigen::MatrixXd& gram,
+                             const std::vector<Column>& indirect, const LightEstimates& lights, const Column& residual,
+                             const Eigen::VectorXd& sqrt_weight, int channel) {
   const auto n = Eigen::Index(lights.size());
-  Eigen::MatrixXd instruments(residual.rows(), 4 * n);
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(4 * n);
   Eigen::MatrixXd by_bounces(residual.rows(), n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    const ColumnWithGradient& column = direct[std::size_t(j)];
-    for (int a = 0; a < 3; ++a) {
-      instruments.col(3 * j + a) =
-          lights[std::size_t(j)].intensity[channel] * sqrt_weight.cwiseProduct(column.gradient[a].col(channel));
-    }
-    instruments.col(3 * n + j) = sqrt_weight.cwiseProduct(column.value.col(channel));
+    scale.segment<3>(3 * j).setConstant(lights[std::size_t(j)].intensity[channel]);
     by_bounces.col(j) = sqrt_weight.cwiseProduct(indirect[std::size_t(j)].col(channel));
   }
   ChannelSystem system;
-  system.normal = instruments.transpose() * instruments;
-  system.normal.rightCols(n) += instruments.transpose() * by_bounces;
-  system.gradient = instruments.transpose() * sqrt_weight.cwiseProduct(residual.col(channel));
+  system.normal = scale.asDiagonal() * gram * scale.asDiagonal();
+  system.normal.rightCols(n) += scale.asDiagonal() * (instruments.transpose() * by_bounces);
+  const Eigen::VectorXd weighted = sqrt_weight.cwiseProduct(residual.col(channel));
+  system.gradient = scale.asDiagonal() * (instruments.transpose() * weighted);
   return system;
 }
 
@@ -72,9 +79,12 @@ Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct,
                                   const LightEstimates& lights, const Column& residual,
                                   const Eigen::VectorXd& sqrt_weight) {
   const auto n = Eigen::Index(lights.size());
+  const Eigen::MatrixXd instruments = instruments_of(direct, sqrt_weight);
+  const Eigen::MatrixXd gram = instruments.transpose() * instruments;
   std::array<ChannelSystem, 3> systems;
-  renderer::parallel_for(
-      3, [&](std::size_t c) { systems[c] = channel_system(direct, indirect, lights, residual, sqrt_weight, int(c)); });
+  renderer::parallel_for(3, [&](std::size_t c) {
+    systems[c] = channel_system(instruments, gram, indirect, lights, residual, sqrt_weight, int(c));
+  });
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6 * n);
   std::vector<Eigen::Index> unknown(std::size_t(4 * n));

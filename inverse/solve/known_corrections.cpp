@@ -3,14 +3,9 @@
 #include <algorithm>
 
 namespace chiaro::inverse {
-namespace {
 
-constexpr double kStill = 5e-4;  // of the region's diagonal: indirect light hardly changes
-
-}  // namespace
-
-KnownCorrections::KnownCorrections(const ExactIndirect& exact, const LightResponse& response)
-    : exact_(exact), response_(response), near_(kStill * double(response.grid().region.diagonal())) {}
+KnownCorrections::KnownCorrections(const ExactIndirect& exact, const LightResponse& response, double near)
+    : exact_(exact), response_(response), near_(near) {}
 
 bool KnownCorrections::has_all(const LightEstimates& lights) const {
   return std::all_of(lights.begin(), lights.end(), [&](const LightEstimate& light) { return is_corrected(light); });

@@ -7,10 +7,10 @@ namespace chiaro::inverse {
 // Exact indirect light of the lights of one search, computed once wherever several of them come to stand.
 class KnownCorrections {
  public:
-  // Keeps references.
-  KnownCorrections(const ExactIndirect& exact, const LightResponse& response);
+  // near: metres to a place so near that indirect light hardly is another. Keeps references.
+  KnownCorrections(const ExactIndirect& exact, const LightResponse& response, double near);
 
-  // Each has the correction of where it stands, or of so near a place that it hardly is another.
+  // Each has the correction of where it stands, or near it.
   bool has_all(const LightEstimates& lights) const;
   // Gives them those that they lack.
   void correct(std::vector<LightEstimates>& sets);
@@ -21,7 +21,7 @@ class KnownCorrections {
 
   const ExactIndirect& exact_;
   const LightResponse& response_;
-  double near_;           // metres
+  double near_;
   LightEstimates known_;  // with their corrections
 };
 

@@ -34,9 +34,10 @@ Eigen::MatrixXd jacobian(const std::vector<ColumnWithGradient>& columns, const L
 // Instruments × derivatives, weighted; for least squares, the normal matrix.
 Eigen::MatrixXd product_of(const Derivatives& instruments, const Derivatives& derivatives,
                            const Eigen::VectorXd& weight) {
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(instruments[0].cols(), derivatives[0].cols());
-  for (std::size_t c = 0; c < 3; ++c) product += instruments[c].transpose() * weight.asDiagonal() * derivatives[c];
-  return product;
+  std::array<Eigen::MatrixXd, 3> products;
+  renderer::parallel_for(
+      3, [&](std::size_t c) { products[c] = instruments[c].transpose() * weight.asDiagonal() * derivatives[c]; });
+  return products[0] + products[1] + products[2];
 }
 
 struct Inverse {
@@ -65,28 +66,41 @@ Inverse invert(const FitAtRest& fit) {
   return result;
 }
 
-// How far a receiver pulls at each parameter, with what it would leave if it were left out of the fit.
-Eigen::RowVectorXd pull_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse, Eigen::Index receiver) {
-  Eigen::Matrix<double, 3, Eigen::Dynamic> derivative(3, inverse.cols()), instrument(3, inverse.cols());
-  for (int c = 0; c < 3; ++c) {
-    derivative.row(c) = fit.derivatives[std::size_t(c)].row(receiver);
-    instrument.row(c) = fit.instruments[std::size_t(c)].row(receiver);
+// What receivers `first` … would leave if each of them were left out of the fit.
+Column left_out(const FitAtRest& fit, const Eigen::MatrixXd& inverse, Eigen::Index first, Eigen::Index count) {
+  std::array<std::array<Eigen::VectorXd, 3>, 3> leverage;  // of each receiver, channels × channels
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Eigen::MatrixXd by = fit.derivatives[c].middleRows(first, count) * inverse;
+    for (std::size_t d = 0; d < 3; ++d) {
+      leverage[c][d] = by.cwiseProduct(fit.instruments[d].middleRows(first, count)).rowwise().sum();
+    }
   }
-  const Eigen::Matrix3d leverage = fit.weight[receiver] * derivative * inverse * instrument.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen((leverage + leverage.transpose()) / 2);
-  const Eigen::Vector3d outside = (1 - eigen.eigenvalues().array()).max(kLeastOutside).inverse();
-  const Eigen::Vector3d left_out = eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose() *
-                                   fit.residual.row(receiver).transpose();
-  return fit.weight[receiver] * left_out.transpose() * instrument;
+  Column left(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::Matrix3d own;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t d = 0; d < 3; ++d) own(Eigen::Index(c), Eigen::Index(d)) = leverage[c][d][i];
+    }
+    own *= fit.weight[first + i];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen((own + own.transpose()) / 2);
+    const Eigen::Vector3d outside = (1 - eigen.eigenvalues().array()).max(kLeastOutside).inverse();
+    left.row(i) =
+        fit.residual.row(first + i) * eigen.eigenvectors() * outside.asDiagonal() * eigen.eigenvectors().transpose();
+  }
+  return left;
 }
 
+// How far each receiver pulls at each parameter, with what it would leave if it were left out of the fit.
 Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
   constexpr Eigen::Index kBlock = 256;
-  Eigen::MatrixXd pulls(fit.weight.size(), inverse.cols());
+  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(fit.weight.size(), inverse.cols());
   renderer::parallel_for(std::size_t((pulls.rows() + kBlock - 1) / kBlock), [&](std::size_t block) {
-    const Eigen::Index first = Eigen::Index(block) * kBlock;
-    for (Eigen::Index i = first; i < std::min(pulls.rows(), first + kBlock); ++i)
-      pulls.row(i) = pull_of(fit, inverse, i);
+    const Eigen::Index first = Eigen::Index(block) * kBlock, count = std::min(kBlock, pulls.rows() - first);
+    const Column left = left_out(fit, inverse, first, count);
+    for (int c = 0; c < 3; ++c) {
+      const Eigen::VectorXd pull = fit.weight.segment(first, count).cwiseProduct(left.col(c));
+      pulls.middleRows(first, count) += pull.asDiagonal() * fit.instruments[std::size_t(c)].middleRows(first, count);
+    }
   });
   return pulls;
 }

@@ -1,5 +1,6 @@
 #include "inverse/solve/lights_by_trace.h"
 
+#include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/transport/eigen_vectors.h"
 
@@ -51,10 +52,14 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   observations = weighted_by_objective(observations, options.objective);
   observations.rules = problem.intensities;
   const IntensityFit fit = fit_intensities(observations, unity);
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    const Eigen::Array3d grown = growth(lights[j].intensity, fit.intensity[j]);
+    by_trace.lights[j] = {lights[j].position, lights[j].intensity * grown};
+  }
+  if (options.exact_lights > 0) light_the_dark(by_trace.lights);
   std::vector<Eigen::Array3d> grown;
   for (std::size_t j = 0; j < lights.size(); ++j) {
-    grown.push_back(growth(lights[j].intensity, fit.intensity[j]));
-    by_trace.lights[j] = {lights[j].position, lights[j].intensity * grown[j]};
+    grown.push_back(growth(lights[j].intensity, by_trace.lights[j].intensity));
   }
   follow(grown, by_trace.traced);
   by_trace.settling_seconds = clock.finish(

@@ -38,7 +38,6 @@ Observations observe_target(const Target& target, const ReceiverDraw& draw, cons
   o.sqrt_weight.resize(count);
   o.stands_for.resize(count);
   o.standard_error = Eigen::VectorXd::Zero(count);
-  const std::vector<float> standard_error = pooled_standard_errors(target, draw.chosen);
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::size_t receiver = draw.chosen[std::size_t(i)];
     for (int c = 0; c < 3; ++c) {
@@ -47,10 +46,18 @@ Observations observe_target(const Target& target, const ReceiverDraw& draw, cons
     }
     o.sqrt_weight[i] = std::sqrt(double(target.weight[receiver]));
     o.stands_for[i] = 1 / draw.probability[std::size_t(i)];
-    if (!standard_error.empty()) o.standard_error[i] = double(standard_error[std::size_t(i)]);
   }
   o.measure_target();
   return o;
+}
+
+Observations with_noise(Observations observations, const Target& target, const std::vector<std::size_t>& chosen) {
+  const std::vector<float> standard_error = pooled_standard_errors(target, chosen);
+  for (std::size_t i = 0; i < standard_error.size(); ++i) {
+    observations.standard_error[Eigen::Index(i)] = double(standard_error[i]);
+  }
+  observations.measure_target();
+  return observations;
 }
 
 double target_noise(const Target& target) {

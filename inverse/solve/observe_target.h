@@ -23,6 +23,9 @@ std::vector<Vec3f> values_at(const std::vector<Vec3f>& values, const std::vector
 // What (3.6) asks of these receivers, each by itself. `fixed`: their light without the lights sought, cd/m².
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed);
 
+// The same with what the target says of its noise (pooled_errors.h).
+Observations with_noise(Observations observations, const Target& target, const std::vector<std::size_t>& chosen);
+
 // sqrt(Σ weight · se²) / sqrt(Σ weight · Ψ²) over all receivers; 0 where the target does not say.
 double target_noise(const Target& target);
 

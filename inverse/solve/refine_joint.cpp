@@ -6,10 +6,13 @@
 
 #include "inverse/solve/refine_joint.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include "renderer/core/control.h"
@@ -18,124 +21,161 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kAtLimit = 1 - 1e-6;  // of the greatest intensity, or more: it is kept
+constexpr double kRounding = 1e-14;    // of the largest eigenvalue, or less: none
 
-// Residuals of all receivers and channels, row 'channel · receivers + receiver'; one parameter block: x, y, z (metres)
-// of each light.
-class IlluminationResiduals final : public ceres::CostFunction {
+// What a step needs to know of the residuals r and their derivatives J.
+struct NormalEquations {
+  Eigen::MatrixXd squared_jacobian;  // JᵀJ
+  Eigen::VectorXd gradient;          // Jᵀr
+};
+
+// Residuals of all receivers and channels under lights at some places, whose intensities are the best ones there; and
+// how they change as the lights move (x, y, z of each), less what intensities make good as far as they may change.
+class LightsAtPlaces {
  public:
-  IlluminationResiduals(const LightResponse& response, const Observations& observations, const LightEstimates& start)
-      : response_(response), observations_(observations), start_(start) {
-    set_num_residuals(int(3 * observations.wanted.rows()));
-    mutable_parameter_block_sizes()->push_back(int(3 * start.size()));
-  }
+  LightsAtPlaces(const LightResponse& response, const Observations& observations, const LightEstimates& start)
+      : response_(response), observations_(observations), start_(start) {}
 
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    move_to(parameters[0]);
-    Eigen::Map<Column> out(residuals, observations_.wanted.rows(), 3);
-    out = -observations_.wanted;
-    for (std::size_t j = 0; j < columns_.size(); ++j) {
-      out += columns_[j].value * fit_.intensity[j].matrix().asDiagonal();
-    }
-    out = observations_.sqrt_weight.asDiagonal() * out;
-    if (jacobians != nullptr && jacobians[0] != nullptr) fill_jacobian(columns_, fit_, jacobians[0]);
-    return true;
-  }
-
-  // The best ones of lights that stand there.
-  const std::vector<Eigen::Array3d>& intensities(const double* parameters) const {
-    move_to(parameters);
-    return fit_.intensity;
-  }
-
- private:
-  // Ceres asks for the Jacobian where it has asked for the residuals alone before, wherever a step led downwards:
-  // gradients come with the rays that were traced for the latter.
-  void move_to(const double* parameters) const {
-    const std::vector<double> at(parameters, parameters + 3 * start_.size());
+  // Ceres asks for the derivatives where it has asked for the residuals alone before, wherever a step led downwards:
+  // they come with the rays that were traced for the latter.
+  void move_to(const double* positions) {
+    const std::vector<double> at(positions, positions + 3 * start_.size());
     if (at == at_) return;
     columns_.resize(start_.size());
     renderer::parallel_for(columns_.size(), [&](std::size_t j) {
-      const Eigen::Vector3d position(parameters + 3 * j);
+      const Eigen::Vector3d position(at.data() + 3 * j);
       columns_[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
       if (start_[j].correction.size() > 0) columns_[j].value += start_[j].correction;
     });
     std::vector<Column> values;
     for (const ColumnWithGradient& column : columns_) values.push_back(column.value);
     fit_ = fit_intensities(observations_, values);
+    residual_ = total_illumination(values, fit_.intensity, receivers()) - observations_.wanted;
+    residual_.array().colwise() *= observations_.sqrt_weight.array();
     at_ = at;
   }
 
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<Eigen::Array3d>& intensities() const { return fit_.intensity; }
+  double residual_norm() const { return residual_.norm(); }
 
-  // What a move changes, less what intensities make good as far as they may change.
-  void fill_jacobian(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit, double* jacobian) const {
-    const Eigen::Index receivers = observations_.wanted.rows(), lights = Eigen::Index(columns.size());
-    Eigen::Map<Jacobian> out(jacobian, 3 * receivers, 3 * lights);
-    for (int c = 0; c < 3; ++c) {
-      Eigen::MatrixXd moved = moved_by(columns, fit, c);
-      if (!observations_.rules.color_is_ruled()) take_off(free_columns(columns, fit, c), moved);
-      out.middleRows(c * receivers, receivers) = moved;
+  NormalEquations normal_equations() const {
+    const Eigen::Index unknowns = Eigen::Index(3 * columns_.size());
+    NormalEquations sum{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
+    if (observations_.rules.color_is_ruled()) {
+      Eigen::MatrixXd moved(3 * receivers(), unknowns);
+      for (int c = 0; c < 3; ++c) fill_moved(c, moved.middleRows(c * receivers(), receivers()));
+      add(ruled_changes(), moved, residual_.reshaped(), sum);
+      return sum;
     }
-    if (!observations_.rules.color_is_ruled() || fit.directions.empty()) return;
-    Eigen::MatrixXd all = out;
-    take_off(ruled_changes(columns, fit), all);
-    out = all;
+    for (int c = 0; c < 3; ++c) {
+      Eigen::MatrixXd moved(receivers(), unknowns);
+      fill_moved(c, moved);
+      add(free_columns(c), moved, residual_.col(c), sum);
+    }
+    return sum;
   }
 
-  // Receivers × 3 lights.
-  Eigen::MatrixXd moved_by(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit, int channel) const {
-    Eigen::MatrixXd moved(observations_.wanted.rows(), Eigen::Index(3 * columns.size()));
-    for (std::size_t j = 0; j < columns.size(); ++j) {
+ private:
+  Eigen::Index receivers() const { return observations_.wanted.rows(); }
+
+  // What a move changes in one channel.
+  void fill_moved(int channel, Eigen::Ref<Eigen::MatrixXd> moved) const {
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
       for (int a = 0; a < 3; ++a) {
         moved.col(Eigen::Index(3 * j) + a) =
-            fit.intensity[j][channel] * observations_.sqrt_weight.cwiseProduct(columns[j].gradient[a].col(channel));
+            fit_.intensity[j][channel] * observations_.sqrt_weight.cwiseProduct(columns_[j].gradient[a].col(channel));
       }
     }
-    return moved;
   }
 
   // Of the lights whose intensity may go up and down.
-  Eigen::MatrixXd free_columns(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit,
-                               int channel) const {
-    Eigen::MatrixXd free(observations_.wanted.rows(), Eigen::Index(columns.size()));
+  Eigen::MatrixXd free_columns(int channel) const {
+    Eigen::MatrixXd free(receivers(), Eigen::Index(columns_.size()));
     Eigen::Index count = 0;
-    for (std::size_t j = 0; j < columns.size(); ++j) {
-      const double intensity = fit.intensity[j][channel];
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      const double intensity = fit_.intensity[j][channel];
       if (!(intensity > 0 && intensity < kAtLimit * observations_.rules.max_intensity)) continue;
-      free.col(count++) = observations_.sqrt_weight.cwiseProduct(columns[j].value.col(channel));
+      free.col(count++) = observations_.sqrt_weight.cwiseProduct(columns_[j].value.col(channel));
     }
     return free.leftCols(count);
   }
 
   // Of all channels, one below the other.
-  Eigen::MatrixXd ruled_changes(const std::vector<ColumnWithGradient>& columns, const IntensityFit& fit) const {
-    const Eigen::Index receivers = observations_.wanted.rows();
-    Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(3 * receivers, Eigen::Index(fit.directions.size()));
-    for (std::size_t k = 0; k < fit.directions.size(); ++k) {
-      for (std::size_t j = 0; j < columns.size(); ++j) {
+  Eigen::MatrixXd ruled_changes() const {
+    Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(3 * receivers(), Eigen::Index(fit_.directions.size()));
+    for (std::size_t k = 0; k < fit_.directions.size(); ++k) {
+      for (std::size_t j = 0; j < columns_.size(); ++j) {
         for (int c = 0; c < 3; ++c) {
-          changes.col(Eigen::Index(k)).segment(c * receivers, receivers) +=
-              fit.directions[k](Eigen::Index(j), c) * observations_.sqrt_weight.cwiseProduct(columns[j].value.col(c));
+          changes.col(Eigen::Index(k)).segment(c * receivers(), receivers()) +=
+              fit_.directions[k](Eigen::Index(j), c) * observations_.sqrt_weight.cwiseProduct(columns_[j].value.col(c));
         }
       }
     }
     return changes;
   }
 
-  static void take_off(const Eigen::MatrixXd& changes, Eigen::MatrixXd& moved) {
+  // J = (I − Q Qᵀ) moved, where Q is an orthonormal basis of the changes that intensities make.
+  static void add(const Eigen::MatrixXd& changes, const Eigen::MatrixXd& moved, const Eigen::VectorXd& residual,
+                  NormalEquations& sum) {
+    sum.squared_jacobian.selfadjointView<Eigen::Lower>().rankUpdate(moved.transpose());
+    sum.gradient += moved.transpose() * residual;
     if (changes.cols() == 0) return;
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(changes);
     const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(changes.rows(), qr.rank());
-    moved -= basis * (basis.transpose() * moved).eval();
+    const Eigen::MatrixXd along = basis.transpose() * moved;
+    sum.squared_jacobian.selfadjointView<Eigen::Lower>().rankUpdate(along.transpose(), -1);
+    sum.gradient -= along.transpose() * (basis.transpose() * residual).eval();
   }
 
   const LightResponse& response_;
   const Observations& observations_;
   const LightEstimates& start_;  // for the corrections
   // Where the lights were last, and what they do there.
-  mutable std::vector<double> at_;
-  mutable std::vector<ColumnWithGradient> columns_;
-  mutable IntensityFit fit_;
+  std::vector<double> at_;
+  std::vector<ColumnWithGradient> columns_;
+  IntensityFit fit_;
+  Column residual_;  // weighted
+};
+
+// As Ceres sees it: as many residuals as unknowns and one more, with the same cost, gradient and JᵀJ as those of all
+// receivers, so that its steps are the same and none of its products as long as the receivers are many. With
+// JᵀJ = V D Vᵀ they are D^½ Vᵀ in the unknowns, D^−½ Vᵀ Jᵀr in value, and what is left of ‖r‖. One parameter block: x,
+// y, z (metres) of each light.
+class CondensedResiduals final : public ceres::CostFunction {
+ public:
+  explicit CondensedResiduals(LightsAtPlaces& lights, int unknowns) : lights_(lights) {
+    set_num_residuals(unknowns + 1);
+    mutable_parameter_block_sizes()->push_back(unknowns);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    lights_.move_to(parameters[0]);
+    const double norm = lights_.residual_norm();
+    const int unknowns = num_residuals() - 1;
+    Eigen::Map<Eigen::VectorXd> out(residuals, unknowns + 1);
+    out.setZero();
+    out[unknowns] = norm;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    const NormalEquations normal = lights_.normal_equations();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal.squared_jacobian);
+    const Eigen::VectorXd along = eigen.eigenvectors().transpose() * normal.gradient;
+    Eigen::Map<Jacobian> jacobian(jacobians[0], unknowns + 1, unknowns);
+    jacobian.setZero();
+    const double least = kRounding * eigen.eigenvalues().maxCoeff();
+    for (int k = 0; k < unknowns; ++k) {
+      const double value = eigen.eigenvalues()[k];
+      if (!(value > least)) continue;
+      jacobian.row(k) = std::sqrt(value) * eigen.eigenvectors().col(k).transpose();
+      out[k] = along[k] / std::sqrt(value);
+    }
+    out[unknowns] = std::sqrt(std::max(0.0, norm * norm - out.head(unknowns).squaredNorm()));
+    return true;
+  }
+
+ private:
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  LightsAtPlaces& lights_;
 };
 
 std::vector<Eigen::Vector3d> positions_of(const double* x, int size) {
@@ -220,15 +260,15 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   ceres::Problem problem;
   double* const parameters = positions.front().data();
   problem.AddParameterBlock(parameters, int(3 * start.size()), new AllowedPositions(response.places(), start.size()));
-  auto* const residuals = new IlluminationResiduals(response, observations, start);  // owned by the problem
-  problem.AddResidualBlock(residuals, nullptr, parameters);
+  LightsAtPlaces lights(response, observations, start);
+  problem.AddResidualBlock(new CondensedResiduals(lights, int(3 * start.size())), nullptr, parameters);
   [[maybe_unused]] static const bool silent = silence_ceres();
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  const std::vector<Eigen::Array3d>& intensities = residuals->intensities(parameters);
+  lights.move_to(parameters);
   for (std::size_t j = 0; j < start.size(); ++j) {
     result.lights[j].position = positions[j];
-    result.lights[j].intensity = intensities[j];
+    result.lights[j].intensity = lights.intensities()[j];
   }
   result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
   result.iterations = int(summary.iterations.size());

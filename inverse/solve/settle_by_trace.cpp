@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "inverse/solve/directly_lit.h"
+#include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -14,8 +15,11 @@ namespace {
 constexpr int kRounds = 3, kDrafts = 5;
 constexpr double kLeastPaths = 2e6;   // of all receivers together …
 constexpr int kEnoughSamples = 256;   // … or so many per receiver
-constexpr std::size_t kMany = 30000;  // receivers at most
-constexpr double kNear = 1e-3;        // of the region's diagonal: of all light, that by bounces hardly changes
+constexpr std::size_t kMany = 30000;  // receivers at most …
+constexpr std::size_t kSome = 8000;   // … and while lights are on their way
+constexpr double kNear = 1e-3;        // of the region's diagonal: of all light, that by bounces hardly changes …
+constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at all …
+constexpr double kCarried = 3;        // … or, so many times as far, can be carried along
 constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
 constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
 constexpr double kGain = 0.01;        // of the squared error: what a light must explain
@@ -24,7 +28,8 @@ constexpr double kGain = 0.01;        // of the squared error: what a light must
 struct FreeLights {
   LightEstimates traced, now;
   std::vector<Column> brought;      // by each as traced
-  std::vector<Column> indirect;     // of it by bounces, at 1 cd
+  std::vector<Column> indirect;     // of it by bounces, at 1 cd; once carried along, as where the light is now
+  std::vector<Column> carried;      // what that changed at all receivers; empty: nothing was
   std::vector<std::size_t> number;  // in the trace
 
   void remove(std::size_t j) {
@@ -34,6 +39,7 @@ struct FreeLights {
     now.erase(now.begin() + at);
     brought.erase(brought.begin() + at);
     indirect.erase(indirect.begin() + at);
+    if (!carried.empty()) carried.erase(carried.begin() + at);
   }
 };
 
@@ -98,7 +104,7 @@ bool any_share_a_place(const LightEstimates& lights, double distance) {
   return false;
 }
 
-// The light by bounces would hardly be another if it were traced again.
+// None has moved farther than this, weighed by its share of all light.
 bool at_rest(const Bench& bench, const FreeLights& free, double near) {
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     const double share = bench.norm(free.brought[j]) / bench.observations.target_norm;
@@ -148,6 +154,39 @@ Observations wanted_of(const Settling& with, const FreeLights& free, const Fresh
   return with.held > 0 ? with_capped_weights(observations) : observations;
 }
 
+// Light by bounces at all receivers, at 1 cd.
+std::vector<Column> unity_indirect_of_all(const Settling& with, const LightEstimates& lights,
+                                          const std::vector<const std::vector<Vec3f>*>& traced) {
+  std::vector<Column> indirect = direct_columns(with.all, lights);
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    indirect[j] = unity_indirect(column_of(*traced[j]), indirect[j], lights[j].intensity);
+  }
+  return indirect;
+}
+
+// Light by bounces becomes that of where the lights are now: by the difference of two traces of few but the same paths,
+// whose noise is mostly the same as well. before, now: first parts of the trace, of all lights.
+void carry_along(const Settling& with, const FreshTrace& before, const FreshTrace& now, FreeLights& free) {
+  std::vector<const std::vector<Vec3f>*> traced_before, traced_now;
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    traced_before.push_back(&before.of_light[free.number[j]]);
+    traced_now.push_back(&now.of_light[with.held + j]);
+  }
+  const std::vector<Column> there = unity_indirect_of_all(with, free.traced, traced_before);
+  free.carried = unity_indirect_of_all(with, free.now, traced_now);
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    Column& change = free.carried[j];
+    for (int c = 0; c < 3; ++c) {
+      // Of a channel that is dark in one of them nothing is known.
+      const bool shines = free.traced[j].intensity[c] > 0 && free.now[j].intensity[c] > 0;
+      change.col(c) = shines ? Eigen::VectorXd(change.col(c) - there[j].col(c)) : Eigen::VectorXd::Zero(change.rows());
+    }
+    for (std::size_t k = 0; k < with.draw.chosen.size(); ++k) {
+      free.indirect[j].row(Eigen::Index(k)) += change.row(Eigen::Index(with.draw.chosen[k]));
+    }
+  }
+}
+
 // The illumination that was traced becomes that of the lights where they are now.
 void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
   std::vector<Vec3f>& illumination = traced.all.value;
@@ -156,7 +195,8 @@ void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
   const std::vector<Column> before = direct_columns(with.all, free.traced), now = direct_columns(with.all, free.now);
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     const Column brought = column_of(traced.of_light[free.number[j]]);
-    const Column indirect = unity_indirect(brought, before[j], free.traced[j].intensity);
+    Column indirect = unity_indirect(brought, before[j], free.traced[j].intensity);
+    if (!free.carried.empty()) indirect += free.carried[j];
     change += (now[j] + indirect) * free.now[j].intensity.matrix().asDiagonal();
   }
   for (std::size_t i = 0; i < illumination.size(); ++i) {
@@ -227,30 +267,42 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
     return trace_lights(problem, options, control, lights, clock);
   }
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  const Settling with{problem.target,
-                      draw,
-                      {problem.tracer, search, samples_at(problem.target, draw.chosen)},
-                      {problem.tracer, search, problem.target.receivers.samples},
-                      found.held,
-                      options.exact_lights == 0,
-                      kNear * double(search.grid().region.diagonal())};
+  const auto settling_over = [&](std::size_t receivers) {
+    const ReceiverDraw draw = draw_evenly(problem.target, receivers);
+    return Settling{problem.target,
+                    draw,
+                    {problem.tracer, search, samples_at(problem.target, draw.chosen)},
+                    {problem.tracer, search, problem.target.receivers.samples},
+                    found.held,
+                    options.exact_lights == 0,
+                    kNear * double(search.grid().region.diagonal())};
+  };
+  const Settling with = settling_over(kMany);
   const auto out_of_time = [&] { return options.time_limit > 0 && clock.total() > options.time_limit; };
   Approach approached;
   if (!any_share_a_place(lights, with.near) && !out_of_time())
-    approached = approach(problem, options, control, with, lights, clock);
+    approached = approach(problem, options, control, settling_over(kSome), lights, clock);
   double seconds = approached.seconds;
   for (int round = 1;; ++round) {
-    LightsByTrace by_trace =
-        trace_lights(problem, options, control, lights, clock, std::exchange(approached.first_part, std::nullopt));
+    FreshTrace first = approached.first_part ? *std::exchange(approached.first_part, std::nullopt)
+                                             : trace_first_part(problem, point_lights(lights), options, control);
+    LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock, first);
     by_trace.settling_seconds = seconds;
     if (any_share_a_place(lights, with.near)) return by_trace;
     FreeLights free = free_lights(with, lights, by_trace.traced);
     const Bench bench{with.some.response(), wanted_of(with, free, by_trace.traced)};
     if (any_hidden(bench, free)) return by_trace;
-    const double error = bench.descend(free);
+    double error = bench.descend(free);
+    const bool rests = at_rest(bench, free, kCarried * with.near);
+    if (rests && !at_rest(bench, free, kVeryNear * with.near) && !out_of_time()) {
+      seconds += clock.finish("settling", {{"lights", double(free.now.size())}});
+      const FreshTrace now = trace_first_part(problem, point_lights(joined(with, lights, free)), options, control);
+      clock.finish("verification", verification_figures(now));
+      carry_along(with, first, now, free);
+      error = bench.descend(free);
+    }
     LightIntervals intervals = with.may_remove ? remove_needless(bench, error, free) : bench.intervals(free);
-    const bool rests = at_rest(bench, free, with.near);
+    if (options.exact_lights > 0) light_the_dark(free.now);
     lights = joined(with, lights, free);
     if (rests) {
       follow(with, free, by_trace.traced);

@@ -160,7 +160,8 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
                           control,
                           importance,
                           samples,
-                          observe_target(problem.target, {importance.chosen, importance.probability}, fixed),
+                          with_noise(observe_target(problem.target, {importance.chosen, importance.probability}, fixed),
+                                     problem.target, importance.chosen),
                           region_may_grow(problem)};
   if (!(basis.published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");

@@ -18,8 +18,8 @@ using renderer::Vec3f;
 
 namespace {
 
-constexpr float kReach = 0.1F;      // of a light's rays, of the scene's diagonal
-constexpr std::size_t kRays = 128;  // of the light, in each of …
+constexpr float kReach = 0.05F;     // of a light's rays, of the scene's diagonal: from farther away receivers find more
+constexpr std::size_t kRays = 32;   // of the light, in each of …
 constexpr std::size_t kSets = 4;    // … so many sets: neighbouring receivers are connected with other ones
 constexpr float kApart = 4.0F;      // cell radii: closer to a receiver only its own rays find a cell
 constexpr std::uint64_t kSeed = 0x5b07;

@@ -6,6 +6,7 @@
 
 #include "inverse/transport/bright_spot.h"
 #include "inverse/transport/eigen_vectors.h"
+#include "inverse/transport/gather_cells.h"
 #include "inverse/transport/nearest_gather_point.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
@@ -20,12 +21,8 @@ using renderer::Vec3f;
 
 namespace {
 
-constexpr int kPathLength = 4;  // surfaces that a path leaves gather points on
-constexpr int kPathsPerGatherPoint = 32;
+constexpr int kPathLength = 4;      // surfaces that a path leaves gather points on
 constexpr float kNearField = 8.0F;  // cell radii
-constexpr int kRaysPerGatherPoint = 64;
-constexpr int kHiddenPerGatherPoint = 8;      // samples that see no gather point, of which one becomes another …
-constexpr std::size_t kMostHiddenPoints = 2;  // … up to this part of those that there are
 
 struct GatherHit {
   SurfaceSample at;
@@ -68,51 +65,6 @@ std::vector<SurfaceSample> trace_gather_paths(const RayTracer& tracer, std::span
   std::vector<SurfaceSample> all;
   for (const auto& path : paths) all.insert(all.end(), path.begin(), path.end());
   return all;
-}
-
-std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std::size_t count) {
-  std::vector<SurfaceSample> chosen;
-  count = std::min(count, all.size());
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
-  return chosen;
-}
-
-// With some of those that see none of them.
-std::vector<SurfaceSample> with_hidden(std::vector<SurfaceSample> points, const std::vector<SurfaceSample>& all,
-                                       const NearestGatherPoint& nearest) {
-  std::vector<char> is_hidden(all.size());
-  renderer::parallel_for(all.size(), [&](std::size_t i) { is_hidden[i] = nearest.find_seen(all[i]) ? 0 : 1; });
-  std::vector<SurfaceSample> hidden;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (is_hidden[i] != 0) hidden.push_back(all[i]);
-  }
-  const std::size_t count = std::min(hidden.size() / kHiddenPerGatherPoint, points.size() / kMostHiddenPoints);
-  const std::vector<SurfaceSample> more = every_nth(hidden, count);
-  points.insert(points.end(), more.begin(), more.end());
-  return points;
-}
-
-// Samples that see no gather point are of no cell.
-void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, const NearestGatherPoint& nearest) {
-  std::vector<std::optional<std::uint32_t>> cell(all.size());
-  renderer::parallel_for(all.size(), [&](std::size_t i) { cell[i] = nearest.find_seen(all[i]); });
-  gather.cell_start.assign(gather.points.size() + 1, 0);
-  for (const auto& c : cell) {
-    if (c) ++gather.cell_start[*c + 1];
-  }
-  std::partial_sum(gather.cell_start.begin(), gather.cell_start.end(), gather.cell_start.begin());
-  std::vector<std::size_t> next(gather.cell_start.begin(), gather.cell_start.end() - 1);
-  gather.cell_samples.resize(gather.cell_start.back());
-  gather.cell_radius.assign(gather.points.size(), 0);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!cell[i]) continue;
-    gather.cell_samples[next[*cell[i]]++] = all[i];
-    gather.cell_radius[*cell[i]] += length_squared(all[i].position - gather.points[*cell[i]].position);
-  }
-  for (std::size_t c = 0; c < gather.points.size(); ++c) {
-    const std::size_t count = gather.cell_start[c + 1] - gather.cell_start[c];
-    gather.cell_radius[c] = std::sqrt(gather.cell_radius[c] / float(std::max<std::size_t>(1, count)));
-  }
 }
 
 std::vector<std::size_t> all_of(std::size_t count) {
@@ -264,17 +216,14 @@ GatherOperator make_gather_points(const RayTracer& tracer, std::span<const Surfa
   gather.bounces = options.bounces;
   if (options.bounces == 0) return gather;
   const std::size_t wanted = std::size_t(options.samples) * options.points_per_sample;
-  const auto all = trace_gather_paths(tracer, receivers, kPathsPerGatherPoint * wanted, options.seed + 1);
-  gather.points = every_nth(all, wanted);
+  place_gather_points(
+      gather, tracer,
+      trace_gather_paths(tracer, receivers, std::size_t(options.paths_per_point) * wanted, options.seed + 1), wanted);
   if (gather.points.empty()) return gather;
-  const float spacing = typical_spacing(tracer.bounds(), gather.points.size());
-  gather.points = with_hidden(gather.points, all, {tracer, gather.points, spacing});
-  gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
-  fill_cells(gather, all, *gather.nearest);
   gather.interreflection =
-      make_interreflection(trace_rows(tracer, gather.points, all_of(gather.points.size()), kRaysPerGatherPoint,
+      make_interreflection(trace_rows(tracer, gather.points, all_of(gather.points.size()), options.rays_per_point,
                                       options.seed + 2, *gather.nearest, control));
-  gather.ray_count = gather.points.size() * kRaysPerGatherPoint;
+  gather.ray_count = gather.points.size() * std::size_t(options.rays_per_point);
   return gather;
 }
 

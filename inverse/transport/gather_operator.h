@@ -44,6 +44,8 @@ struct GatherOperator {
 struct GatherOptions {
   int samples = 256;           // rays per receiver
   int points_per_sample = 32;  // gather points = samples × this
+  int paths_per_point = 32;    // traced from the receivers, whose ends are samples of the cells
+  int rays_per_point = 64;     // from gather points to each other
   int bounces = -1;
   std::uint64_t seed = 0;
 };

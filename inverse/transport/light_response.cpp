@@ -107,30 +107,36 @@ Column LightResponse::exact(const UnityLight& light) const {
   return column;
 }
 
-// Σ weight(w) · N of its grid light.
-template <class WeightOf>
-Column LightResponse::sum_of_indirect(const std::vector<GridWeight>& weights, const WeightOf& weight) const {
-  using Rows = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;  // as cached
-  const auto count = Eigen::Index(receivers_.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> sum(count, 3);
-  sum.setZero();
-  for (const GridWeight& w : weights) {
-    const float* indirect = &cache_.indirect[w.light * cache_.receiver_count].x;
-    sum += weight(w) * Eigen::Map<const Rows>(indirect, count, 3).cast<double>();
+// Σ w N over grid lights, w their value and its three derivatives, or the value alone.
+template <int Lanes>
+std::array<Column, Lanes> LightResponse::sums_of_indirect(const std::vector<GridWeight>& weights) const {
+  constexpr Eigen::Index kReceivers = 128;                                 // so that sums stay in the first cache
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // RGB by RGB, as cached
+  std::array<Column, Lanes> sums;
+  for (Column& sum : sums) sum.resize(Eigen::Index(receivers_.size()), 3);
+  Eigen::Matrix<double, Eigen::Dynamic, Lanes> some(3 * kReceivers, Lanes);
+  Eigen::VectorXd indirect;
+  for (Eigen::Index first = 0; first < sums[0].rows(); first += kReceivers) {
+    const Eigen::Index count = std::min(kReceivers, sums[0].rows() - first);
+    some.setZero();
+    for (const GridWeight& w : weights) {
+      const float* cached = &cache_.indirect[w.light * cache_.receiver_count + std::size_t(first)].x;
+      indirect = Eigen::Map<const Eigen::VectorXf>(cached, 3 * count).cast<double>();
+      some.col(0).head(3 * count) += w.value * indirect;
+      for (int l = 1; l < Lanes; ++l) some.col(l).head(3 * count) += w.gradient[l - 1] * indirect;
+    }
+    for (int l = 0; l < Lanes; ++l) {
+      sums[std::size_t(l)].middleRows(first, count) = Eigen::Map<const Rows>(some.col(l).data(), count, 3);
+    }
   }
-  return sum;
+  return sums;
 }
 
-Column LightResponse::indirect(const std::vector<GridWeight>& weights) const {
-  return sum_of_indirect(weights, [](const GridWeight& w) { return w.value; });
-}
+Column LightResponse::indirect(const std::vector<GridWeight>& weights) const { return sums_of_indirect<1>(weights)[0]; }
 
 ColumnWithGradient LightResponse::indirect_with_gradient(const std::vector<GridWeight>& weights) const {
-  ColumnWithGradient column{indirect(weights), {}};
-  for (int a = 0; a < 3; ++a) {
-    column.gradient[a] = sum_of_indirect(weights, [a](const GridWeight& w) { return w.gradient[a]; });
-  }
-  return column;
+  std::array<Column, 4> sums = sums_of_indirect<4>(weights);
+  return {std::move(sums[0]), {std::move(sums[1]), std::move(sums[2]), std::move(sums[3])}};
 }
 
 ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light, Evaluation evaluation) const {
@@ -139,12 +145,15 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light
   const std::vector<GridWeight> weights = exact ? std::vector<GridWeight>() : interpolation_.weights(light.position);
   const std::vector<double> visible = visibility(light.position, evaluation, weights);
   ColumnWithGradient column = exact ? gathered_with_gradient(light) : indirect_with_gradient(weights);
+  Eigen::ArrayX4d direct = Eigen::ArrayX4d::Zero(Eigen::Index(receivers_.size()), 4);  // value, derivatives
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     if (!(visible[i] > 0)) continue;
-    const DirectTerm direct = unoccluded_term(receivers_[i], light);
-    column.value.row(Eigen::Index(i)).array() += visible[i] * direct.value;
-    for (int a = 0; a < 3; ++a) column.gradient[a].row(Eigen::Index(i)).array() += visible[i] * direct.gradient[a];
+    const DirectTerm term = unoccluded_term(receivers_[i], light);
+    direct.row(Eigen::Index(i)) << term.value, term.gradient.transpose().array();
+    direct.row(Eigen::Index(i)) *= visible[i];
   }
+  column.value.colwise() += direct.col(0).matrix();
+  for (int a = 0; a < 3; ++a) column.gradient[a].colwise() += direct.col(1 + a).matrix();
   return column;
 }
 

@@ -60,8 +60,8 @@ class LightResponse {
   Column grid_column(std::size_t light) const;
 
  private:
-  template <class WeightOf>
-  Column sum_of_indirect(const std::vector<GridWeight>& weights, const WeightOf& weight) const;
+  template <int Lanes>
+  std::array<Column, Lanes> sums_of_indirect(const std::vector<GridWeight>& weights) const;
   Column indirect(const std::vector<GridWeight>& weights) const;
   ColumnWithGradient indirect_with_gradient(const std::vector<GridWeight>& weights) const;
   ColumnWithGradient gathered_with_gradient(const UnityLight& light) const;

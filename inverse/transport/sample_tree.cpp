@@ -60,4 +60,9 @@ std::size_t SampleTree::find_nearest(const SurfaceSample& at, std::span<std::uin
   return tree_->index.knnSearch(query, found.size(), found.data(), squared_distance.data());
 }
 
+float SampleTree::squared_distance(const SurfaceSample& a, const SurfaceSample& b) const {
+  const float scale = tree_->cloud.scale;
+  return length_squared(a.position - b.position) + scale * scale * length_squared(a.normal - b.normal);
+}
+
 }  // namespace chiaro::inverse

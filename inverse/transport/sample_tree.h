@@ -22,6 +22,8 @@ class SampleTree {
   const std::vector<renderer::SurfaceSample>& samples() const;
   // Fills `found` with the indices of the nearest, nearest first. Returns how many there are.
   std::size_t find_nearest(const renderer::SurfaceSample& at, std::span<std::uint32_t> found) const;
+  // How far apart two samples count as, squared metres.
+  float squared_distance(const renderer::SurfaceSample& a, const renderer::SurfaceSample& b) const;
 
  private:
   struct Tree;

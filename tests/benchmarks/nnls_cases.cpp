@@ -61,7 +61,8 @@ Observed observe(const Stage& stage, SetNumber number, const TargetOptions& opti
   const inverse::Receivers receivers = inverse::select_receivers(target.receivers, importance.chosen);
   const std::vector<renderer::Vec3f> no_fixed_light(receivers.size());
   const auto observations =
-      inverse::observe_target(target, {importance.chosen, importance.probability}, no_fixed_light);
+      with_noise(inverse::observe_target(target, {importance.chosen, importance.probability}, no_fixed_light), target,
+                 importance.chosen);
   inverse::BakeResult bake = inverse::bake(stage.tracer, receivers, stage.grid,
                                            {.samples = 256, .bounces = -1, .seed = 0, .materials = "gltf"});
   return {weighted_by_noise(observations, bake.cache.indirect_relative_error), std::move(bake), receivers.samples};

@@ -41,7 +41,8 @@ Options parse(int argc, char** argv) {
   app.add_option("--first", options.first, "Number of the first set");
   app.add_option("--lights", options.lights)->delimiter(',');
   app.add_option("--noise", options.targets.noise, "Of the targets, relative L2");
-  app.add_option("--method", options.method)->check(CLI::IsMember({"joint", "thesis", "both"}));
+  app.add_option("--method", options.method, "none: targets are traced and kept, no more")
+      ->check(CLI::IsMember({"joint", "thesis", "both", "none"}));
   app.add_option("--important-vertices", options.important_vertices);
   app.add_option("--max-edge", options.max_edge, "Of the receivers, metres");
   app.add_option("--targets", options.targets.folder,
@@ -59,6 +60,7 @@ struct NamedMethod {
 
 std::vector<NamedMethod> methods_of(const Options& options) {
   std::vector<NamedMethod> methods;
+  if (options.method == "none") return methods;
   if (options.method != "joint") methods.push_back({"thesis", SolveMethod::kThesis});
   if (options.method != "thesis") methods.push_back({"joint", SolveMethod::kJoint});
   return methods;

@@ -65,6 +65,22 @@ TEST_F(HeldOutRoom, ALightThatFitsNoiseIsNot) {
   EXPECT_FALSE(clearly_smaller(held_out_->residuals(lights_), held_out_->residuals(more)));
 }
 
+TEST_F(HeldOutRoom, ResidualsOfASearchAreThose) {
+  HeldOutResiduals residuals(*held_out_, 0.01);
+  const Eigen::VectorXd expected = held_out_->residuals(lights_);
+  EXPECT_LT((residuals.of(lights_) - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_EQ(residuals.of(lights_), residuals.of(lights_));
+  // Direct light and intensities are always those of now; indirect light hardly changes within a centimetre.
+  LightEstimates moved = lights_;
+  moved[0].position.x() += 0.005;
+  moved[1].intensity *= 1.2;
+  const Eigen::VectorXd near = held_out_->residuals(moved);
+  EXPECT_LT((residuals.of(moved) - near).norm(), 0.02 * near.norm());
+  EXPECT_GT((near - expected).norm(), 0.05 * near.norm());
+  moved[0].position.x() += 0.5;
+  EXPECT_LT((residuals.of(moved) - held_out_->residuals(moved)).norm(), 1e-5 * held_out_->residuals(moved).norm());
+}
+
 TEST(HeldOut, NoiseAloneIsHardlyEverClear) {
   int clear = 0;
   for (std::uint32_t k = 0; k < 1000; ++k) {

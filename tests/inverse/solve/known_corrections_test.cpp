@@ -22,7 +22,7 @@ class CorrectedCorner : public ::testing::Test {
           .cache;
   LightResponse response_{corner_.tracer(), some_.samples, cache_};
   ExactIndirect exact_{corner_.tracer(), some_.samples, cache_.settings};
-  KnownCorrections corrections_{exact_, response_};
+  KnownCorrections corrections_{exact_, response_, 5e-4 * corner_.diagonal()};
   const LightEstimates known_ = known_lights(3);
   const Vector3d step_ = 1e-4 * corner_.diagonal() * Vector3d::UnitX();  // indirect light hardly changes
 

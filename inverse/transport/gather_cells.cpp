@@ -1,0 +1,97 @@
+#include "inverse/transport/gather_cells.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "inverse/transport/nearest_gather_point.h"
+#include "renderer/core/control.h"
+
+namespace chiaro::inverse {
+
+using renderer::SurfaceSample;
+
+namespace {
+
+constexpr int kHiddenPerGatherPoint = 8;      // samples that see no gather point, of which one becomes another …
+constexpr std::size_t kMostHiddenPoints = 2;  // … up to this part of those that there are
+
+std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std::size_t count) {
+  std::vector<SurfaceSample> chosen;
+  count = std::min(count, all.size());
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  return chosen;
+}
+
+// Of each sample the gather point that it sees, if any.
+using Cells = std::vector<std::optional<std::uint32_t>>;
+
+Cells find_cells(const std::vector<SurfaceSample>& all, const NearestGatherPoint& nearest) {
+  Cells cells(all.size());
+  renderer::parallel_for(all.size(), [&](std::size_t i) { cells[i] = nearest.find_seen(all[i]); });
+  return cells;
+}
+
+// Some of the samples that see none.
+std::vector<SurfaceSample> choose_hidden(const std::vector<SurfaceSample>& all, const Cells& cells,
+                                         std::size_t points) {
+  std::vector<SurfaceSample> hidden;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!cells[i]) hidden.push_back(all[i]);
+  }
+  return every_nth(hidden, std::min(hidden.size() / kHiddenPerGatherPoint, points / kMostHiddenPoints));
+}
+
+// The same cells when these gather points have come to those that there were: of samples that none of them is nearer
+// to, and that see one, it stays.
+void find_cells_again(const std::vector<SurfaceSample>& all, const std::vector<SurfaceSample>& points,
+                      const std::vector<SurfaceSample>& more, const NearestGatherPoint& nearest, float spacing,
+                      Cells& cells) {
+  const SampleTree among_more(more, spacing);
+  renderer::parallel_for(all.size(), [&](std::size_t i) {
+    std::uint32_t found = 0;
+    among_more.find_nearest(all[i], {&found, 1});
+    const auto distance = [&](const SurfaceSample& to) { return among_more.squared_distance(all[i], to); };
+    if (!cells[i] || distance(more[found]) < distance(points[*cells[i]])) cells[i] = nearest.find_seen(all[i]);
+  });
+}
+
+// Samples that see no gather point are of no cell.
+void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, const Cells& cells) {
+  gather.cell_start.assign(gather.points.size() + 1, 0);
+  for (const auto& cell : cells) {
+    if (cell) ++gather.cell_start[*cell + 1];
+  }
+  std::partial_sum(gather.cell_start.begin(), gather.cell_start.end(), gather.cell_start.begin());
+  std::vector<std::size_t> next(gather.cell_start.begin(), gather.cell_start.end() - 1);
+  gather.cell_samples.resize(gather.cell_start.back());
+  gather.cell_radius.assign(gather.points.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!cells[i]) continue;
+    gather.cell_samples[next[*cells[i]]++] = all[i];
+    gather.cell_radius[*cells[i]] += length_squared(all[i].position - gather.points[*cells[i]].position);
+  }
+  for (std::size_t c = 0; c < gather.points.size(); ++c) {
+    const std::size_t count = gather.cell_start[c + 1] - gather.cell_start[c];
+    gather.cell_radius[c] = std::sqrt(gather.cell_radius[c] / float(std::max<std::size_t>(1, count)));
+  }
+}
+
+}  // namespace
+
+void place_gather_points(GatherOperator& gather, const renderer::RayTracer& tracer,
+                         const std::vector<SurfaceSample>& all, std::size_t wanted) {
+  gather.points = every_nth(all, wanted);
+  if (gather.points.empty()) return;
+  const float spacing = typical_spacing(tracer.bounds(), gather.points.size());
+  gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
+  Cells cells = find_cells(all, *gather.nearest);
+  const std::vector<SurfaceSample> more = choose_hidden(all, cells, gather.points.size());
+  if (!more.empty()) {
+    gather.points.insert(gather.points.end(), more.begin(), more.end());
+    gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
+    find_cells_again(all, gather.points, more, *gather.nearest, spacing, cells);
+  }
+  fill_cells(gather, all, cells);
+}
+
+}  // namespace chiaro::inverse

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "inverse/transport/gather_operator.h"
+
+namespace chiaro::inverse {
+
+// Makes so many of the samples gather points, and some more where none of these is seen; each of all the samples is of
+// the cell of the point that stands for it. Fills points, cells and `nearest`.
+void place_gather_points(GatherOperator& gather, const renderer::RayTracer& tracer,
+                         const std::vector<renderer::SurfaceSample>& samples, std::size_t wanted);
+
+}  // namespace chiaro::inverse
