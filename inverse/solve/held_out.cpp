@@ -5,7 +5,6 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kSignificant = 3;  // standard errors
 constexpr int kPointsPerSample = 32, kPathsPerPoint = 16, kRaysPerPoint = 32;
 
 TransportCache cache_of_nothing(std::size_t receivers) {
@@ -75,10 +74,10 @@ const Column* HeldOutResiduals::find(const Eigen::Vector3d& position) const {
   return nearest == nullptr ? nullptr : &nearest->indirect;
 }
 
-bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double standard_errors) {
   const Eigen::VectorXd gain = before - after;
   const double mean = gain.mean(), count = double(gain.size());
-  return mean > kSignificant * std::sqrt((gain.array() - mean).square().sum()) / count;
+  return mean > standard_errors * std::sqrt((gain.array() - mean).square().sum()) / count;
 }
 
 }  // namespace chiaro::inverse

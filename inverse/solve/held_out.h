@@ -49,7 +49,7 @@ class HeldOutResiduals {
   std::deque<Known> known_;
 };
 
-// Whether the second are smaller than chance makes them: a paired test of their mean, at three standard errors.
-bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after);
+// Whether the second are smaller than chance makes them: a paired test of their mean, at so many standard errors.
+bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double standard_errors = 3);
 
 }  // namespace chiaro::inverse

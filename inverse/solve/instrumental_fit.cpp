@@ -157,8 +157,8 @@ void descend_with_instruments(const LightResponse& response, const Observations&
   }
 }
 
-double fit_intensities_with_instruments(const LightResponse& response, const Observations& observations,
-                                        const std::vector<Column>& indirect, LightEstimates& lights) {
+void fit_intensities_with_instruments(const LightResponse& response, const Observations& observations,
+                                      const std::vector<Column>& indirect, LightEstimates& lights) {
   const std::vector<Column> direct = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   std::vector<Column> all = direct;
   for (std::size_t j = 0; j < lights.size(); ++j) all[j] += indirect[j];
@@ -176,7 +176,6 @@ double fit_intensities_with_instruments(const LightResponse& response, const Obs
     const Eigen::VectorXd intensity = solve_with_instruments(normal, wanted);
     for (Eigen::Index j = 0; j < n; ++j) lights[std::size_t(j)].intensity[c] = intensity[j];
   }
-  return relative_error(observations, total_illumination(all, lights, receivers));
 }
 
 LightIntervals intervals_with_instruments(const LightResponse& response, const Observations& observations,

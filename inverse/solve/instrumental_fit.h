@@ -22,9 +22,9 @@ void descend_with_instruments(const LightResponse& response, const Observations&
                               const std::vector<Column>& indirect, LightEstimates& lights);
 
 // The intensities alone, none negative, with weights by which residuals cannot take off the mean: noise is not
-// symmetric, and none but fireflies lose weight. Returns the error that is left, (3.6).
-double fit_intensities_with_instruments(const LightResponse& response, const Observations& observations,
-                                        const std::vector<Column>& indirect, LightEstimates& lights);
+// symmetric, and none but fireflies lose weight.
+void fit_intensities_with_instruments(const LightResponse& response, const Observations& observations,
+                                      const std::vector<Column>& indirect, LightEstimates& lights);
 
 // How sure lights so fitted are (light_intervals.h).
 LightIntervals intervals_with_instruments(const LightResponse& response, const Observations& observations,

@@ -1,25 +1,27 @@
 #include "inverse/solve/settle_by_trace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/parted_lights.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kRounds = 3, kDrafts = 5;
+constexpr int kRounds = 3, kDrafts = 5, kMostPartings = 3;
 constexpr double kLeastPaths = 2e6;   // of all receivers together …
 constexpr int kEnoughSamples = 256;   // … or so many per receiver
 constexpr std::size_t kMany = 30000;  // receivers at most …
 constexpr std::size_t kSome = 8000;   // … and while lights are on their way
 constexpr double kNear = 1e-3;        // of the region's diagonal: of all light, that by bounces hardly changes …
 constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at all …
-constexpr double kCarried = 3;        // … or, so many times as far, can be carried along
+constexpr double kCarried = 10;       // … or, so many times as far, can be carried along
 constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
 constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
 constexpr double kGain = 0.01;        // of the squared error: what a light must explain
@@ -48,9 +50,14 @@ struct Bench {
   const LightResponse& response;
   Observations observations;
 
-  double descend(FreeLights& free) const {
+  void descend(FreeLights& free) const {
     descend_with_instruments(response, observations, free.indirect, free.now);
-    return fit_intensities_with_instruments(response, observations, free.indirect, free.now);
+    fit_intensities_with_instruments(response, observations, free.indirect, free.now);
+  }
+  double squared_error(const FreeLights& free) const {
+    LightEstimates lights = free.now;
+    for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = free.indirect[j];
+    return std::pow(relative_error(observations, illumination_of(response, lights)), 2);
   }
   LightIntervals intervals(const FreeLights& free) const {
     return intervals_with_instruments(response, observations, free.indirect, free.now);
@@ -64,24 +71,23 @@ bool is_doubtful(const LightEstimate& light, const LightInterval& interval) {
 }
 
 // Takes away the first light that the others do as well without; false: there is none.
-bool remove_needless_one(const Bench& bench, const LightIntervals& intervals, double& error, FreeLights& free) {
+bool remove_needless_one(const Bench& bench, const LightIntervals& intervals, FreeLights& free) {
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     if (!is_doubtful(free.now[j], intervals.lights[j])) continue;
     FreeLights others = free;
     others.remove(j);
-    const double without = bench.descend(others);
-    if (without * without > (1 + kGain) * error * error) continue;
+    bench.descend(others);
+    if (bench.squared_error(others) > (1 + kGain) * bench.squared_error(free)) continue;
     free = std::move(others);
-    error = without;
     return true;
   }
   return false;
 }
 
 // One always stays. Returns how sure those are that stay.
-LightIntervals remove_needless(const Bench& bench, double error, FreeLights& free) {
+LightIntervals remove_needless(const Bench& bench, FreeLights& free) {
   LightIntervals intervals = bench.intervals(free);
-  while (free.now.size() > 1 && remove_needless_one(bench, intervals, error, free)) intervals = bench.intervals(free);
+  while (free.now.size() > 1 && remove_needless_one(bench, intervals, free)) intervals = bench.intervals(free);
   return intervals;
 }
 
@@ -120,14 +126,21 @@ bool is_worth_it(const SolveOptions& options, std::size_t receivers, std::size_t
   return precise && lights <= kMostLightsWithIntervals;
 }
 
-// The problem, and where its lights are settled.
+// The problem, and the receivers that lights are settled by.
 struct Settling {
   const Target& target;
   ReceiverDraw draw;
   DirectlyLit some, all;  // receivers: those drawn, and all
-  std::size_t held;
-  bool may_remove;
-  double near;  // metres
+  std::size_t held;       // of the first lights, that stay
+  double near;            // metres
+
+  Settling(const SolveProblem& problem, const LightResponse& search, std::size_t receivers, std::size_t held_lights)
+      : target(problem.target),
+        draw(draw_evenly(target, receivers)),
+        some(problem.tracer, search, samples_at(target, draw.chosen)),
+        all(problem.tracer, search, target.receivers.samples),
+        held(held_lights),
+        near(kNear * double(search.grid().region.diagonal())) {}
 };
 
 std::vector<Column> direct_columns(const DirectlyLit& receivers, const LightEstimates& lights) {
@@ -226,36 +239,120 @@ void come_to_rest(const AllowedPlaces& places, const LightEstimates& earlier, co
   }
 }
 
-struct Approach {
-  std::optional<FreshTrace> first_part{};  // of the trace where the lights are in the end; absent: they moved since
-  double seconds = 0;                      // without the traces
-};
+// The steps of settle_by_trace().
+class Settler {
+ public:
+  Settler(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+          const LightResponse& search, std::size_t held, StageClock& clock)
+      : problem_(problem),
+        options_(options),
+        control_(control),
+        clock_(clock),
+        with_(problem, search, kMany, held),
+        on_the_way_(problem, search, kSome, held) {}
 
-// Towards where they will settle, by first parts of traces, until they would hardly move. None goes.
-Approach approach(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-                  const Settling& with, LightEstimates& lights, StageClock& clock) {
-  Approach done;
-  LightEstimates earlier, before;
-  for (int draft = 0; draft < kDrafts; ++draft) {
-    FreshTrace traced = trace_first_part(problem, point_lights(lights), options, control);
-    clock.finish("verification", verification_figures(traced));
-    FreeLights free = free_lights(with, lights, traced);
-    const Bench bench{with.some.response(), wanted_of(with, free, traced)};
-    const bool hidden = any_hidden(bench, free);
-    if (!hidden) bench.descend(free);
-    const bool rests = hidden || at_rest(bench, free, with.near);
-    if (!rests) {
-      earlier = std::exchange(before, lights);
-      lights = joined(with, lights, free);
-      come_to_rest(with.some.response().places(), earlier, before, lights);
+  LightsByTrace settle(LightEstimates lights) {
+    if (!any_share_a_place(lights, with_.near) && !out_of_time()) approach(lights);
+    for (int round = 1;; ++round) {
+      FreshTrace first = first_part_ ? *std::exchange(first_part_, std::nullopt) : trace_first_part_of(lights);
+      LightsByTrace by_trace = trace_lights(problem_, options_, control_, lights, clock_, first);
+      by_trace.settling_seconds = seconds_;
+      if (any_share_a_place(lights, with_.near)) return by_trace;
+      FreeLights free = free_lights(with_, lights, by_trace.traced);
+      const Bench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced)};
+      if (any_hidden(bench, free)) return by_trace;
+      bench.descend(free);
+      const bool rests = at_rest(bench, free, kCarried * with_.near);
+      if (rests) {
+        carry_along_with(bench, first, lights, free);
+        if (part(bench, free, lights)) continue;
+      }
+      LightIntervals intervals = only_needed(bench, free);
+      lights = joined(with_, lights, free);
+      if (rests) {
+        follow(with_, free, by_trace.traced);
+        by_trace.lights = lights;
+        if (with_.held == 0) by_trace.intervals = std::move(intervals);
+      }
+      finish("settling", lights.size(), rests);
+      by_trace.settling_seconds = seconds_;
+      if (rests || round == kRounds + partings_ || out_of_time()) return by_trace;
     }
-    done.seconds += clock.finish("approach", {{"at_rest", rests ? 1 : 0}});
-    if (!rests) continue;
-    done.first_part = std::move(traced);
-    break;
   }
-  return done;
-}
+
+ private:
+  bool out_of_time() const { return options_.time_limit > 0 && clock_.total() > options_.time_limit; }
+
+  void finish(const char* stage, std::size_t lights, bool rests) {
+    seconds_ += clock_.finish(stage, {{"lights", double(lights)}, {"at_rest", rests ? 1 : 0}});
+  }
+
+  FreshTrace trace_first_part_of(const LightEstimates& lights) {
+    FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_);
+    clock_.finish("verification", verification_figures(traced));
+    return traced;
+  }
+
+  // Towards where they will settle, by first parts of traces, until they would hardly move. None goes.
+  void approach(LightEstimates& lights) {
+    LightEstimates earlier, before;
+    for (int draft = 0; draft < kDrafts; ++draft) {
+      FreshTrace traced = trace_first_part_of(lights);
+      FreeLights free = free_lights(on_the_way_, lights, traced);
+      const Bench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced)};
+      const bool hidden = any_hidden(bench, free);
+      if (!hidden) bench.descend(free);
+      const bool rests = hidden || at_rest(bench, free, on_the_way_.near);
+      if (!rests) {
+        earlier = std::exchange(before, lights);
+        lights = joined(on_the_way_, lights, free);
+        come_to_rest(on_the_way_.some.response().places(), earlier, before, lights);
+      }
+      finish("approach", lights.size(), rests);
+      if (!rests) continue;
+      first_part_ = std::move(traced);
+      return;
+    }
+  }
+
+  void carry_along_with(const Bench& bench, const FreshTrace& first, const LightEstimates& lights, FreeLights& free) {
+    if (at_rest(bench, free, kVeryNear * with_.near) || out_of_time()) return;
+    finish("settling", lights.size(), false);
+    carry_along(with_, first, trace_first_part_of(joined(with_, lights, free)), free);
+    bench.descend(free);
+  }
+
+  // True: one of them has stood for two, and there is one more, on its way.
+  bool part(const Bench& bench, const FreeLights& free, LightEstimates& lights) {
+    const bool may_part = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
+    if (!may_part || partings_ == kMostPartings || out_of_time()) return false;
+    const auto more = parted(problem_.tracer, bench.response, bench.observations, free.indirect, free.now);
+    if (!more) return false;
+    ++partings_;
+    lights.resize(with_.held);
+    lights.insert(lights.end(), more->begin(), more->end());
+    finish("settling", lights.size(), false);
+    approach(lights);
+    return true;
+  }
+
+  // As many as asked for, or those that matter.
+  LightIntervals only_needed(const Bench& bench, FreeLights& free) const {
+    if (options_.exact_lights == 0) return remove_needless(bench, free);
+    LightIntervals intervals = bench.intervals(free);
+    light_the_dark(free.now);
+    return intervals;
+  }
+
+  const SolveProblem& problem_;
+  const SolveOptions& options_;
+  const renderer::Control& control_;
+  StageClock& clock_;
+  const Settling with_, on_the_way_;
+  std::optional<FreshTrace> first_part_{};  // of the trace where the lights are in the end; absent: they moved since
+  double seconds_ = 0;                      // without the traces
+  int partings_ = 0;
+};
 
 }  // namespace
 
@@ -267,52 +364,7 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
     return trace_lights(problem, options, control, lights, clock);
   }
-  const auto settling_over = [&](std::size_t receivers) {
-    const ReceiverDraw draw = draw_evenly(problem.target, receivers);
-    return Settling{problem.target,
-                    draw,
-                    {problem.tracer, search, samples_at(problem.target, draw.chosen)},
-                    {problem.tracer, search, problem.target.receivers.samples},
-                    found.held,
-                    options.exact_lights == 0,
-                    kNear * double(search.grid().region.diagonal())};
-  };
-  const Settling with = settling_over(kMany);
-  const auto out_of_time = [&] { return options.time_limit > 0 && clock.total() > options.time_limit; };
-  Approach approached;
-  if (!any_share_a_place(lights, with.near) && !out_of_time())
-    approached = approach(problem, options, control, settling_over(kSome), lights, clock);
-  double seconds = approached.seconds;
-  for (int round = 1;; ++round) {
-    FreshTrace first = approached.first_part ? *std::exchange(approached.first_part, std::nullopt)
-                                             : trace_first_part(problem, point_lights(lights), options, control);
-    LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock, first);
-    by_trace.settling_seconds = seconds;
-    if (any_share_a_place(lights, with.near)) return by_trace;
-    FreeLights free = free_lights(with, lights, by_trace.traced);
-    const Bench bench{with.some.response(), wanted_of(with, free, by_trace.traced)};
-    if (any_hidden(bench, free)) return by_trace;
-    double error = bench.descend(free);
-    const bool rests = at_rest(bench, free, kCarried * with.near);
-    if (rests && !at_rest(bench, free, kVeryNear * with.near) && !out_of_time()) {
-      seconds += clock.finish("settling", {{"lights", double(free.now.size())}});
-      const FreshTrace now = trace_first_part(problem, point_lights(joined(with, lights, free)), options, control);
-      clock.finish("verification", verification_figures(now));
-      carry_along(with, first, now, free);
-      error = bench.descend(free);
-    }
-    LightIntervals intervals = with.may_remove ? remove_needless(bench, error, free) : bench.intervals(free);
-    if (options.exact_lights > 0) light_the_dark(free.now);
-    lights = joined(with, lights, free);
-    if (rests) {
-      follow(with, free, by_trace.traced);
-      by_trace.lights = lights;
-      if (found.held == 0) by_trace.intervals = std::move(intervals);
-    }
-    seconds += clock.finish("settling", {{"lights", double(lights.size())}, {"at_rest", rests ? 1 : 0}});
-    by_trace.settling_seconds = seconds;
-    if (rests || round == kRounds || out_of_time()) return by_trace;
-  }
+  return Settler(problem, options, control, search, found.held, clock).settle(std::move(lights));
 }
 
 }  // namespace chiaro::inverse

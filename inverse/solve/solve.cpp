@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -102,6 +103,19 @@ void require_all_lights(const SolveProblem& problem, const SolveOptions& options
   if (std::all_of(found.begin(), found.end(), is_dark)) nothing_lit(problem);
 }
 
+// In place of the set of as many that the search knew, if any.
+void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<LightSet>& curve) {
+  LightSet set{{}, relative_l2};
+  for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
+  const auto at = std::find_if(curve.begin(), curve.end(),
+                               [&](const LightSet& other) { return other.lights.size() >= set.lights.size(); });
+  if (at != curve.end() && at->lights.size() == set.lights.size()) {
+    *at = std::move(set);
+  } else {
+    curve.insert(at, std::move(set));
+  }
+}
+
 LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                      const LightResponse& response, const Optimum& found, StageClock& clock) {
   if (found.settles) return settle_by_trace(problem, options, control, response, found, clock);
@@ -181,6 +195,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
   result.termination = optimum.termination;
   result.error_curve = optimum.error_curve;
+  if (by_trace.lights.size() > optimum.lights.size()) {
+    set_in_curve(by_trace.lights, result.relative_l2_cached, result.error_curve);
+  }
   result.region = searched->transport.cache.grid.region;
   result.target_noise = target_noise(problem.target);
   judge(problem, options, std::move(by_trace.traced), result);

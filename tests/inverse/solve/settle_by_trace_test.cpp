@@ -111,6 +111,24 @@ TEST_F(SettleByTrace, LightsThatAreThereForNothingGo) {
   EXPECT_EQ(settle(target, start, three).lights.size(), 3U);
 }
 
+TEST_F(SettleByTrace, ALightThatStoodForTwoParts) {
+  LightEstimates known = known_lights(3);
+  const Eigen::Vector3d apart(0.25, 0.1, -0.2);
+  known[2] = {known[1].position + apart, 0.7 * known[1].intensity};
+  // One light where both have their middle, and as bright as both.
+  const LightEstimate whole{known[1].position + (0.7 / 1.7) * apart, 1.7 * known[1].intensity};
+  const Target target = corner_.target(known, -1);
+  const LightsByTrace settled = settle(target, {known[0], whole});
+  ASSERT_EQ(settled.lights.size(), 3U);
+  // Where they come to from the truth: so near each other noise leaves them less precise than others.
+  const LightsByTrace from_truth = settle(target, known);
+  EXPECT_LT(farthest_from(from_truth.lights, positions_of(settled.lights)), kPrecise);
+  EXPECT_LT(farthest_from(known, positions_of(from_truth.lights)), 0.05);
+  SolveOptions two;
+  two.max_lights = 2;
+  EXPECT_EQ(settle(target, {known[0], whole}, two).lights.size(), 2U);
+}
+
 TEST_F(SettleByTrace, LightsThatAreHeldStay) {
   const LightEstimates known = known_lights(2);
   const LightEstimates start{known[1], displaced({known[0]}, 0.012)[0]};
