@@ -125,6 +125,12 @@ double relative_error(const Observations& observations, const Column& illuminati
   return norm / observations.target_norm;
 }
 
+Eigen::VectorXd relative_residuals(const Observations& observations, const Column& illumination) {
+  const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
+  return observations.sqrt_weight.array() * (illumination - observations.wanted).rowwise().norm().array() /
+         brightness.max(kDark * brightness.mean());
+}
+
 std::array<WeightedSystem, 3> weighted_systems(const Observations& observations, const std::vector<Column>& columns) {
   std::array<WeightedSystem, 3> channels;
   renderer::parallel_for(3, [&](std::size_t channel) {

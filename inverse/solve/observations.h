@@ -71,6 +71,9 @@ Column total_illumination(const std::vector<Column>& columns, const LightEstimat
 // D(I(p), Ψ) of eq. (3.6) over the important vertices.
 double relative_error(const Observations& observations, const Column& illumination);
 
+// What each receiver lacks or has too much, relative to its brightness: none of them counts more than others.
+Eigen::VectorXd relative_residuals(const Observations& observations, const Column& illumination);
+
 // Columns and what is wanted of them in each channel, weighted as the observations have it.
 std::array<WeightedSystem, 3> weighted_systems(const Observations& observations, const std::vector<Column>& columns);
 

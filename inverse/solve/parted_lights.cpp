@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kSome = 4000;     // receivers that tell where the parts may stand
 constexpr std::size_t kMostSplits = 2;  // that are followed
 constexpr double kWorthTrying = 0.004;  // of the squared error, that a split takes off where its parts are proposed
-constexpr double kSignificant = 4;      // standard errors: the receivers that tell are those of the fit
-constexpr double kDark = 0.1;           // brightness that residuals are compared with at least, in means of all
+constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
+constexpr double kSignificant = 4;      // … and standard errors: the receivers that tell are those of the fit
 
 std::vector<renderer::SurfaceSample> samples_of(const LightResponse& response, const std::vector<std::size_t>& rows) {
   std::vector<renderer::SurfaceSample> samples;
@@ -62,12 +62,9 @@ double error_of(const LightResponse& response, const Observations& observations,
   return relative_error(observations, illumination_of(response, lights));
 }
 
-// Of each receiver, relative to its brightness.
 Eigen::VectorXd residuals(const LightResponse& response, const Observations& observations,
                           const std::vector<Column>& indirect, const LightEstimates& lights) {
-  const Column left = illumination_of(response, with_indirect(lights, indirect)) - observations.wanted;
-  const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
-  return observations.sqrt_weight.array() * left.rowwise().norm().array() / brightness.max(kDark * brightness.mean());
+  return relative_residuals(observations, illumination_of(response, with_indirect(lights, indirect)));
 }
 
 }  // namespace
@@ -90,6 +87,7 @@ std::optional<LightEstimates> parted(const renderer::RayTracer& tracer, const Li
     return residuals(response, observations, of_all, set);
   };
   const double squared_error = std::pow(error_of(some.response(), of_some, whole), 2);
+  const double of_all_squared = std::pow(error_of(response, observations, with_indirect(lights, indirect)), 2);
   const Eigen::VectorXd before = residuals(response, observations, indirect, lights);
   std::optional<LightEstimates> best;
   double least = before.sum();
@@ -100,6 +98,8 @@ std::optional<LightEstimates> parted(const renderer::RayTracer& tracer, const Li
     for (const std::size_t j : parts.part_of) of_all.push_back(indirect[j]);
     const Eigen::VectorXd after = descend(parts.indirect, of_all, parts.lights);
     if (!(after.sum() < least) || !clearly_smaller(before, after, kSignificant)) continue;
+    const double squared = std::pow(error_of(response, observations, with_indirect(parts.lights, of_all)), 2);
+    if (squared > (1 - kGain) * of_all_squared) continue;
     // Descents end here or there beside a shadow's edge: one more of them is to do no better.
     LightEstimates again = lights;
     if (!clearly_smaller(descend(indirect_of_some, indirect, again), after, kSignificant)) continue;

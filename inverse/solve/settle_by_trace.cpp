@@ -1,11 +1,11 @@
 #include "inverse/solve/settle_by_trace.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fill_up_lights.h"
+#include "inverse/solve/held_out.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/parted_lights.h"
@@ -24,6 +24,7 @@ constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at al
 constexpr double kCarried = 10;       // … or, so many times as far, can be carried along
 constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
 constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
+constexpr double kHardlySeen = 0.02;  // of the target's norm: the same
 constexpr double kGain = 0.01;        // of the squared error: what a light must explain
 
 // Lights that may move, as they were traced and as they are now.
@@ -54,10 +55,17 @@ struct Bench {
     descend_with_instruments(response, observations, free.indirect, free.now);
     fit_intensities_with_instruments(response, observations, free.indirect, free.now);
   }
-  double squared_error(const FreeLights& free) const {
+  Column illumination(const FreeLights& free) const {
     LightEstimates lights = free.now;
     for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = free.indirect[j];
-    return std::pow(relative_error(observations, illumination_of(response, lights)), 2);
+    return illumination_of(response, lights);
+  }
+  // Whether a light more explains so much that it is there, and not what is wrong with a few receivers.
+  bool is_needed(const FreeLights& with_it, const FreeLights& without) const {
+    const Column with = illumination(with_it), others = illumination(without);
+    const double error = relative_error(observations, with), of_others = relative_error(observations, others);
+    return of_others * of_others > (1 + kGain) * error * error &&
+           clearly_smaller(relative_residuals(observations, others), relative_residuals(observations, with));
   }
   LightIntervals intervals(const FreeLights& free) const {
     return intervals_with_instruments(response, observations, free.indirect, free.now);
@@ -65,29 +73,38 @@ struct Bench {
   double norm(const Column& light) const { return (observations.sqrt_weight.asDiagonal() * light).norm(); }
 };
 
-// Its intensity may as well be none.
-bool is_doubtful(const LightEstimate& light, const LightInterval& interval) {
-  return (light.intensity < kDoubtful * interval.intensity).all();
+// Its intensity may as well be none, or it lights so little that it may make good what is wrong with the others.
+bool is_doubtful(const Bench& bench, const FreeLights& free, const LightIntervals& intervals, std::size_t j) {
+  return (free.now[j].intensity < kDoubtful * intervals.lights[j].intensity).all() ||
+         bench.norm(free.brought[j]) < kHardlySeen * bench.observations.target_norm;
 }
 
-// Takes away the first light that the others do as well without; false: there is none.
-bool remove_needless_one(const Bench& bench, const LightIntervals& intervals, FreeLights& free) {
+// True: these lights went, as the others do as well without.
+bool remove_if_needless(const Bench& bench, const std::vector<std::size_t>& doubtful, FreeLights& free) {
+  FreeLights others = free;
+  for (auto j = doubtful.rbegin(); j != doubtful.rend(); ++j) others.remove(*j);
+  if (others.now.empty()) return false;
+  bench.descend(others);
+  if (bench.is_needed(free, others)) return false;
+  free = std::move(others);
+  return true;
+}
+
+// Several may make good together what is wrong with the others, so that each of them seems to be needed.
+bool remove_some(const Bench& bench, const LightIntervals& intervals, FreeLights& free) {
+  std::vector<std::size_t> doubtful;
   for (std::size_t j = 0; j < free.now.size(); ++j) {
-    if (!is_doubtful(free.now[j], intervals.lights[j])) continue;
-    FreeLights others = free;
-    others.remove(j);
-    bench.descend(others);
-    if (bench.squared_error(others) > (1 + kGain) * bench.squared_error(free)) continue;
-    free = std::move(others);
-    return true;
+    if (is_doubtful(bench, free, intervals, j)) doubtful.push_back(j);
   }
-  return false;
+  if (doubtful.size() > 1 && remove_if_needless(bench, doubtful, free)) return true;
+  return std::any_of(doubtful.begin(), doubtful.end(),
+                     [&](std::size_t j) { return remove_if_needless(bench, {j}, free); });
 }
 
 // One always stays. Returns how sure those are that stay.
 LightIntervals remove_needless(const Bench& bench, FreeLights& free) {
   LightIntervals intervals = bench.intervals(free);
-  while (free.now.size() > 1 && remove_needless_one(bench, intervals, free)) intervals = bench.intervals(free);
+  while (free.now.size() > 1 && remove_some(bench, intervals, free)) intervals = bench.intervals(free);
   return intervals;
 }
 
