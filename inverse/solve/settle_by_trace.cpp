@@ -24,7 +24,8 @@ constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at al
 constexpr double kCarried = 10;       // … or, so many times as far, can be carried along
 constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
 constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
-constexpr double kHardlySeen = 0.02;  // of the target's norm: the same
+constexpr double kHardlySeen = 0.02;  // of the target's norm: the same of the weakest …
+constexpr std::size_t kMostWeak = 4;  // … few
 constexpr double kGain = 0.01;        // of the squared error: what a light must explain
 
 // Lights that may move, as they were traced and as they are now.
@@ -73,10 +74,22 @@ struct Bench {
   double norm(const Column& light) const { return (observations.sqrt_weight.asDiagonal() * light).norm(); }
 };
 
-// Its intensity may as well be none, or it lights so little that it may make good what is wrong with the others.
-bool is_doubtful(const Bench& bench, const FreeLights& free, const LightIntervals& intervals, std::size_t j) {
-  return (free.now[j].intensity < kDoubtful * intervals.lights[j].intensity).all() ||
-         bench.norm(free.brought[j]) < kHardlySeen * bench.observations.target_norm;
+// Those whose intensity may as well be none, and the weakest few of those that light so little that they may make good
+// what is wrong with the others; in their order.
+std::vector<std::size_t> doubtful_ones(const Bench& bench, const FreeLights& free, const LightIntervals& intervals) {
+  std::vector<std::pair<double, std::size_t>> by_share;
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    by_share.emplace_back(bench.norm(free.brought[j]) / bench.observations.target_norm, j);
+  }
+  std::sort(by_share.begin(), by_share.end());
+  std::vector<std::size_t> doubtful;
+  for (std::size_t k = 0; k < by_share.size(); ++k) {
+    const auto [share, j] = by_share[k];
+    const bool may_be_none = (free.now[j].intensity < kDoubtful * intervals.lights[j].intensity).all();
+    if (may_be_none || (k < kMostWeak && share < kHardlySeen)) doubtful.push_back(j);
+  }
+  std::sort(doubtful.begin(), doubtful.end());
+  return doubtful;
 }
 
 // True: these lights went, as the others do as well without.
@@ -92,10 +105,7 @@ bool remove_if_needless(const Bench& bench, const std::vector<std::size_t>& doub
 
 // Several may make good together what is wrong with the others, so that each of them seems to be needed.
 bool remove_some(const Bench& bench, const LightIntervals& intervals, FreeLights& free) {
-  std::vector<std::size_t> doubtful;
-  for (std::size_t j = 0; j < free.now.size(); ++j) {
-    if (is_doubtful(bench, free, intervals, j)) doubtful.push_back(j);
-  }
+  const std::vector<std::size_t> doubtful = doubtful_ones(bench, free, intervals);
   if (doubtful.size() > 1 && remove_if_needless(bench, doubtful, free)) return true;
   return std::any_of(doubtful.begin(), doubtful.end(),
                      [&](std::size_t j) { return remove_if_needless(bench, {j}, free); });
