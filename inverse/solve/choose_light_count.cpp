@@ -171,7 +171,10 @@ class Search {
   }
 
   void consider_one_more(const LightEstimates& lights) {
-    std::vector<LightEstimates> starts = propose_splits(response_, observations_, lights, kMostSplits);
+    std::vector<LightEstimates> starts;
+    for (Split& split : propose_splits(response_, observations_, lights, kMostSplits)) {
+      starts.push_back(std::move(split.lights));
+    }
     for (LightEstimates& pair : propose_pairs(response_, observations_, lights, kMostPairs)) {
       starts.push_back(std::move(pair));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
@@ -92,8 +93,7 @@ renderer::Illumination ExactIndirect::traced_so_well(const LightResponse& respon
 
 std::vector<Vec3f> ExactIndirect::traced(const LightResponse& response, const std::vector<std::size_t>& receivers,
                                          const Eigen::Vector3d& position, std::size_t paths) const {
-  std::vector<renderer::SurfaceSample> samples;
-  for (const std::size_t i : receivers) samples.push_back(response.receivers()[i]);
+  const std::vector<renderer::SurfaceSample> samples = numerics::chosen_from(response.receivers(), receivers);
   const auto traced =
       trace_illumination(tracer_, samples, {unity_light(position)},
                          {paths_of_each(paths, samples.size()), settings_.bounces, settings_.seed, false});

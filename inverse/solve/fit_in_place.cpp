@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/check_lights_in_place.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/stage_clock.h"
@@ -106,7 +107,7 @@ struct ManyObservations {
 ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control) {
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  ManyObservations many{samples_at(problem.target, draw.chosen), {}};
+  ManyObservations many{numerics::chosen_from(problem.target.receivers.samples, draw.chosen), {}};
   const int fixed_samples = verification_samples(options, many.samples.size());
   const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
   many.observations = weighted_by_objective(observe_target(problem.target, draw, fixed), options.objective);

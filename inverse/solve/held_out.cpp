@@ -37,13 +37,6 @@ std::vector<Column> HeldOut::indirect(const LightEstimates& lights) const {
   return columns;
 }
 
-Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights) const {
-  const std::vector<Column> columns = indirect(lights);
-  std::vector<const Column*> each;
-  for (const Column& column : columns) each.push_back(&column);
-  return residuals(lights, each);
-}
-
 Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const {
   Column left = -observations_.wanted;
   for (std::size_t j = 0; j < lights.size(); ++j) {
@@ -55,23 +48,13 @@ Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vect
 Eigen::VectorXd HeldOutResiduals::of(const LightEstimates& lights) {
   LightEstimates unknown;
   for (const LightEstimate& light : lights) {
-    if (find(light.position) == nullptr) unknown.push_back(light);
+    if (indirect_.find(light.position) == nullptr) unknown.push_back(light);
   }
   std::vector<Column> columns = held_out_.indirect(unknown);
-  for (std::size_t j = 0; j < unknown.size(); ++j) known_.push_back({unknown[j].position, std::move(columns[j])});
+  for (std::size_t j = 0; j < unknown.size(); ++j) indirect_.add(unknown[j].position, std::move(columns[j]));
   std::vector<const Column*> indirect;
-  for (const LightEstimate& light : lights) indirect.push_back(find(light.position));
+  for (const LightEstimate& light : lights) indirect.push_back(&indirect_.find(light.position)->value);
   return held_out_.residuals(lights, indirect);
-}
-
-const Column* HeldOutResiduals::find(const Eigen::Vector3d& position) const {
-  const Known* nearest = nullptr;
-  double least = near_;
-  for (const Known& known : known_) {
-    const double distance = (known.position - position).norm();
-    if (distance <= least) least = distance, nearest = &known;
-  }
-  return nearest == nullptr ? nullptr : &nearest->indirect;
 }
 
 bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double standard_errors) {

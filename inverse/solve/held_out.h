@@ -1,7 +1,6 @@
 #pragma once
 
-#include <deque>
-
+#include "inverse/solve/known_places.h"
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -15,11 +14,10 @@ class HeldOut {
   HeldOut(const HeldOut&) = delete;
   HeldOut& operator=(const HeldOut&) = delete;
 
-  // Weighted, of each receiver, by exact illumination. Their squares would be those of a few receivers beside lights.
-  Eigen::VectorXd residuals(const LightEstimates& lights) const;
-  // The same with indirect light, at 1 cd, that is known already.
-  Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
+  // What each brings by bounces at 1 cd, computed there and not interpolated.
   std::vector<Column> indirect(const LightEstimates& lights) const;
+  // Weighted, of each receiver. Their squares would be those of a few receivers beside lights.
+  Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
 
  private:
   const renderer::RayTracer& tracer_;
@@ -33,20 +31,13 @@ class HeldOut {
 class HeldOutResiduals {
  public:
   // near: metres to a place so near that indirect light hardly is another. Keeps a reference.
-  HeldOutResiduals(const HeldOut& held_out, double near) : held_out_(held_out), near_(near) {}
+  HeldOutResiduals(const HeldOut& held_out, double near) : held_out_(held_out), indirect_(near) {}
 
   Eigen::VectorXd of(const LightEstimates& lights);
 
  private:
-  struct Known {
-    Eigen::Vector3d position;
-    Column indirect;
-  };
-  const Column* find(const Eigen::Vector3d& position) const;
-
   const HeldOut& held_out_;
-  double near_;
-  std::deque<Known> known_;
+  KnownPlaces<Column> indirect_;
 };
 
 // Whether the second are smaller than chance makes them: a paired test of their mean, at so many standard errors.

@@ -14,6 +14,7 @@ namespace {
 constexpr int kSteps = 12;
 constexpr double kStepAtRest = 3e-5;   // of the region's diagonal
 constexpr double kLongestStep = 0.01;  // of the region's diagonal
+constexpr double kFaster = 1.5;        // a light that goes on its way, after it turned
 constexpr double kOutlier = 3;         // medians
 constexpr double kFirefly = 10;        // medians
 constexpr double kLeastScale = 1e-3;   // of a receiver's brightness
@@ -100,23 +101,48 @@ Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct,
   return -normal.partialPivLu().solve(gradient);
 }
 
-// As far as the step goes, within the region and the longest step; true: it moved.
-bool take(const Eigen::VectorXd& step, const LightResponse& response, LightEstimates& lights) {
-  const double diagonal = double(response.grid().region.diagonal());
-  double longest = 0;
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    longest = std::max(longest, step.segment<3>(Eigen::Index(3 * j)).norm());
+// Steps of lights one after the other.
+class Stepper {
+ public:
+  Stepper(const LightResponse& response, std::size_t lights)
+      : response_(response), diagonal_(double(response.grid().region.diagonal())), pace_(lights) {}
+
+  // As far as the step goes, within the region and the longest step; true: it moved.
+  bool take(const Eigen::VectorXd& step, LightEstimates& lights) {
+    double longest = 0;
+    for (std::size_t j = 0; j < lights.size(); ++j) {
+      const Eigen::Vector3d move = step.segment<3>(Eigen::Index(3 * j));
+      slow_down_where_it_turns(move, pace_[j]);
+      longest = std::max(longest, pace_[j].part * move.norm());
+    }
+    const double shorter = std::min(1.0, kLongestStep * diagonal_ / std::max(longest, 1e-300));
+    for (std::size_t j = 0; j < lights.size(); ++j) {
+      LightEstimate& light = lights[j];
+      const double part = shorter * pace_[j].part;
+      const Eigen::Vector3d moved = light.position + part * step.segment<3>(Eigen::Index(3 * j));
+      light.position = response_.places().nearest(moved).value_or(light.position);
+      const auto change = step.segment<3>(Eigen::Index(3 * (lights.size() + j)));
+      light.intensity = (light.intensity + part * change.array()).max(0);
+    }
+    return longest > kStepAtRest * diagonal_;
   }
-  const double part = std::min(1.0, kLongestStep * diagonal / std::max(longest, 1e-300));
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    LightEstimate& light = lights[j];
-    const Eigen::Vector3d moved = light.position + part * step.segment<3>(Eigen::Index(3 * j));
-    light.position = response.places().nearest(moved).value_or(light.position);
-    const auto change = step.segment<3>(Eigen::Index(3 * (lights.size() + j)));
-    light.intensity = (light.intensity + part * change.array()).max(0);
+
+ private:
+  struct Pace {
+    double part = 1;  // of the step
+    Eigen::Vector3d last = Eigen::Vector3d::Zero();
+  };
+
+  // A light that steps over a shadow's edge is led back by what it sees beyond, and so on.
+  static void slow_down_where_it_turns(const Eigen::Vector3d& move, Pace& pace) {
+    pace.part = move.dot(pace.last) < 0 ? pace.part / 2 : std::min(1.0, kFaster * pace.part);
+    pace.last = move;
   }
-  return longest > kStepAtRest * diagonal;
-}
+
+  const LightResponse& response_;
+  double diagonal_;
+  std::vector<Pace> pace_;
+};
 
 // Intensities of one channel, none negative: those that would be are held at zero.
 Eigen::VectorXd solve_with_instruments(const Eigen::MatrixXd& normal, const Eigen::VectorXd& wanted) {
@@ -148,12 +174,13 @@ Column unity_indirect(const Column& traced, const Column& direct, const Eigen::A
 
 void descend_with_instruments(const LightResponse& response, const Observations& observations,
                               const std::vector<Column>& indirect, LightEstimates& lights) {
+  Stepper stepper(response, lights.size());
   for (int k = 0; k < kSteps; ++k) {
     const std::vector<ColumnWithGradient> direct = evaluate_columns_with_gradient(response, lights);
     const Column residual = residual_of(observations, direct, indirect, lights);
     const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kOutlier);
     const Eigen::VectorXd step = gauss_newton_step(direct, indirect, lights, residual, weight);
-    if (!step.allFinite() || !take(step, response, lights)) return;
+    if (!step.allFinite() || !stepper.take(step, lights)) return;
   }
 }
 

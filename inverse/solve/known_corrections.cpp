@@ -5,7 +5,7 @@
 namespace chiaro::inverse {
 
 KnownCorrections::KnownCorrections(const ExactIndirect& exact, const LightResponse& response, double near)
-    : exact_(exact), response_(response), near_(near) {}
+    : exact_(exact), response_(response), near_(near), known_(near) {}
 
 bool KnownCorrections::has_all(const LightEstimates& lights) const {
   return std::all_of(lights.begin(), lights.end(), [&](const LightEstimate& light) { return is_corrected(light); });
@@ -26,7 +26,7 @@ void KnownCorrections::correct(std::vector<LightEstimates>& sets) {
       if (!is_corrected(light)) light = *next++;
     }
   }
-  known_.insert(known_.end(), unknown.begin(), unknown.end());
+  for (LightEstimate& light : unknown) known_.add(light.corrected_at, std::move(light.correction));
 }
 
 bool KnownCorrections::is_corrected(const LightEstimate& light) const {
@@ -35,12 +35,10 @@ bool KnownCorrections::is_corrected(const LightEstimate& light) const {
 
 // False: there is none.
 bool KnownCorrections::take_known(LightEstimate& light) const {
-  const auto known = std::find_if(known_.begin(), known_.end(), [&](const LightEstimate& other) {
-    return (light.position - other.corrected_at).norm() <= near_;
-  });
-  if (known == known_.end()) return false;
-  light.correction = known->correction;
-  light.corrected_at = known->corrected_at;
+  const auto* const known = known_.find(light.position);
+  if (known == nullptr) return false;
+  light.correction = known->value;
+  light.corrected_at = known->position;
   return true;
 }
 

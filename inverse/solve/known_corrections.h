@@ -1,6 +1,7 @@
 #pragma once
 
 #include "inverse/solve/exact_indirect.h"
+#include "inverse/solve/known_places.h"
 
 namespace chiaro::inverse {
 
@@ -22,7 +23,7 @@ class KnownCorrections {
   const ExactIndirect& exact_;
   const LightResponse& response_;
   double near_;
-  LightEstimates known_;  // with their corrections
+  KnownPlaces<Column> known_;  // corrections
 };
 
 }  // namespace chiaro::inverse

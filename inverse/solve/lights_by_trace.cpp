@@ -1,5 +1,6 @@
 #include "inverse/solve/lights_by_trace.h"
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -42,10 +43,11 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
                              const LightEstimates& lights, StageClock& clock) {
   LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
   const ReceiverDraw draw = draw_evenly(problem.target, kMany);
-  Observations observations = observe_target(problem.target, draw, values_at(by_trace.traced.all.value, draw.chosen));
+  Observations observations =
+      observe_target(problem.target, draw, numerics::chosen_from(by_trace.traced.all.value, draw.chosen));
   std::vector<Column> unity;
   for (std::size_t j = 0; j < lights.size(); ++j) {
-    const Column brought = column_of(values_at(by_trace.traced.of_light[j], draw.chosen));
+    const Column brought = column_of(numerics::chosen_from(by_trace.traced.of_light[j], draw.chosen));
     observations.wanted += brought;
     unity.push_back(brought * growth(lights[j].intensity, Eigen::Array3d::Ones()).matrix().asDiagonal());
   }

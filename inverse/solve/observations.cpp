@@ -97,6 +97,18 @@ Observations standing_for_all(const Observations& observations) {
   return all;
 }
 
+Observations rows_of(const Observations& observations, const std::vector<std::size_t>& rows) {
+  Observations some;
+  some.wanted = observations.wanted(rows, Eigen::all);
+  some.target = observations.target(rows, Eigen::all);
+  some.sqrt_weight = observations.sqrt_weight(rows);
+  some.stands_for = observations.stands_for(rows);
+  some.standard_error = observations.standard_error(rows);
+  some.rules = observations.rules;
+  some.measure_target();
+  return some;
+}
+
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity) {
   return (observations.sqrt_weight.asDiagonal() * column * intensity.matrix().asDiagonal()).norm();
 }
@@ -182,6 +194,11 @@ std::vector<ColumnWithGradient> evaluate_columns_with_gradient(const LightRespon
     if (lights[j].correction.size() > 0) columns[j].value += lights[j].correction;
   });
   return columns;
+}
+
+LightEstimates with_corrections(LightEstimates lights, const std::vector<Column>& corrections) {
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = corrections[j];
+  return lights;
 }
 
 Column illumination_of(const LightResponse& response, const LightEstimates& lights) {

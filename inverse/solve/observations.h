@@ -44,6 +44,9 @@ Observations weighted_by_objective(const Observations& observations, Objective o
 // The same with weights by which the important vertices stand for all receivers.
 Observations standing_for_all(const Observations& observations);
 
+// What some of the receivers say.
+Observations rows_of(const Observations& observations, const std::vector<std::size_t>& rows);
+
 // A light being sought.
 struct LightEstimate {
   Eigen::Vector3d position;        // metres
@@ -89,10 +92,17 @@ double refit_intensities(const Observations& observations, const std::vector<Col
 
 // Of sets of lights with their errors, those of the least errors: at most so many, best first.
 template <class SetWithError>
-std::vector<LightEstimates> best_sets(std::vector<SetWithError> sets, std::size_t most) {
+std::vector<SetWithError> best_of(std::vector<SetWithError> sets, std::size_t most) {
   std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
+  sets.resize(std::min(most, sets.size()));
+  return sets;
+}
+
+// The same, their lights alone.
+template <class SetWithError>
+std::vector<LightEstimates> best_sets(std::vector<SetWithError> sets, std::size_t most) {
   std::vector<LightEstimates> best;
-  for (std::size_t k = 0; k < std::min(most, sets.size()); ++k) best.push_back(std::move(sets[k].lights));
+  for (SetWithError& set : best_of(std::move(sets), most)) best.push_back(std::move(set.lights));
   return best;
 }
 
@@ -106,6 +116,9 @@ std::vector<Column> evaluate_columns(const LightResponse& response, const LightE
 // The same with derivatives, visibility traced.
 std::vector<ColumnWithGradient> evaluate_columns_with_gradient(const LightResponse& response,
                                                                const LightEstimates& lights);
+
+// Each with a correction of its own.
+LightEstimates with_corrections(LightEstimates lights, const std::vector<Column>& corrections);
 
 // Of all lights together, by traced visibility and with their corrections.
 Column illumination_of(const LightResponse& response, const LightEstimates& lights);

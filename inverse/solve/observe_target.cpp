@@ -18,18 +18,6 @@ ReceiverDraw draw_evenly(const Target& target, std::size_t most) {
   return draw;
 }
 
-std::vector<renderer::SurfaceSample> samples_at(const Target& target, const std::vector<std::size_t>& chosen) {
-  std::vector<renderer::SurfaceSample> samples;
-  for (const std::size_t i : chosen) samples.push_back(target.receivers.samples[i]);
-  return samples;
-}
-
-std::vector<Vec3f> values_at(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen) {
-  std::vector<Vec3f> some;
-  for (const std::size_t i : chosen) some.push_back(values[i]);
-  return some;
-}
-
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed) {
   const auto count = Eigen::Index(draw.chosen.size());
   Observations o;

@@ -14,12 +14,6 @@ struct ReceiverDraw {
 // At most `most` receivers of positive weight, spread evenly over all of them.
 ReceiverDraw draw_evenly(const Target& target, std::size_t most);
 
-// Where they take their light.
-std::vector<renderer::SurfaceSample> samples_at(const Target& target, const std::vector<std::size_t>& chosen);
-
-// Values of all receivers, of those chosen alone.
-std::vector<Vec3f> values_at(const std::vector<Vec3f>& values, const std::vector<std::size_t>& chosen);
-
 // What (3.6) asks of these receivers, each by itself. `fixed`: their light without the lights sought, cd/m².
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed);
 

@@ -1,11 +1,9 @@
 #include "inverse/solve/parted_lights.h"
 
-#include <cmath>
 #include <utility>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/directly_lit.h"
-#include "inverse/solve/held_out.h"
-#include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/split_lights.h"
 #include "inverse/transport/receivers.h"
 
@@ -14,96 +12,68 @@ namespace {
 
 constexpr std::size_t kSome = 4000;     // receivers that tell where the parts may stand
 constexpr std::size_t kMostSplits = 2;  // that are followed
-constexpr double kWorthTrying = 0.004;  // of the squared error, that a split takes off where its parts are proposed
+constexpr double kWorthTrying = 0.004;  // of the squared error, that parts take off where they are proposed …
+constexpr double kPromising = 1;        // … and standard errors, by all receivers, once these have led them
 constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
 constexpr double kSignificant = 4;      // … and standard errors: the receivers that tell are those of the fit
 
-std::vector<renderer::SurfaceSample> samples_of(const LightResponse& response, const std::vector<std::size_t>& rows) {
-  std::vector<renderer::SurfaceSample> samples;
-  for (const std::size_t row : rows) samples.push_back(response.receivers()[row]);
-  return samples;
-}
+// Lights, and what each brings by bounces, at 1 cd, to some and to all receivers.
+struct Candidate {
+  LightEstimates lights;
+  std::vector<Column> to_some, to_all;
+};
 
-Observations rows_of(const Observations& all, const std::vector<std::size_t>& rows) {
-  Observations some;
-  some.wanted = all.wanted(rows, Eigen::all);
-  some.target = all.target(rows, Eigen::all);
-  some.sqrt_weight = all.sqrt_weight(rows);
-  some.standard_error = all.standard_error(rows);
-  some.measure_target();
+std::vector<Column> rows_of(const std::vector<Column>& columns, const std::vector<std::size_t>& rows) {
+  std::vector<Column> some;
+  for (const Column& column : columns) some.emplace_back(column(rows, Eigen::all));
   return some;
 }
 
-// Each light with what it brings by bounces as its correction.
-LightEstimates with_indirect(LightEstimates lights, const std::vector<Column>& indirect) {
-  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = indirect[j];
-  return lights;
-}
-
-// Lights, and what they bring by bounces to some receivers.
-struct Parted {
-  LightEstimates lights;
-  std::vector<Column> indirect;
-  std::vector<std::size_t> part_of;  // the light of before
-};
-
-Parted taken_apart(LightEstimates split, const LightEstimates& before) {
-  Parted parted{std::move(split), {}, {}};
-  for (LightEstimate& light : parted.lights) {
-    std::size_t whole = 0;
-    while (before[whole].correction != light.correction) ++whole;
-    parted.part_of.push_back(whole);
-    parted.indirect.push_back(std::exchange(light.correction, Column()));
+// One of the lights in two parts, of which each brings by bounces what the whole did.
+std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& whole) {
+  const LightEstimates lights = with_corrections(whole.lights, whole.to_some);
+  const double error = relative_error(some.observations, illumination_of(some.response, lights));
+  std::vector<Candidate> candidates;
+  for (Split& split : propose_splits(some.response, some.observations, lights, kMostSplits)) {
+    if (split.error * split.error > (1 - kWorthTrying) * error * error) continue;
+    Candidate parts{std::move(split.lights), whole.to_some, whole.to_all};
+    for (LightEstimate& light : parts.lights) light.correction = Column();
+    parts.to_some.push_back(whole.to_some[split.parted]);
+    parts.to_all.push_back(whole.to_all[split.parted]);
+    candidates.push_back(std::move(parts));
   }
-  return parted;
-}
-
-double error_of(const LightResponse& response, const Observations& observations, const LightEstimates& lights) {
-  return relative_error(observations, illumination_of(response, lights));
-}
-
-Eigen::VectorXd residuals(const LightResponse& response, const Observations& observations,
-                          const std::vector<Column>& indirect, const LightEstimates& lights) {
-  return relative_residuals(observations, illumination_of(response, with_indirect(lights, indirect)));
+  return candidates;
 }
 
 }  // namespace
 
-std::optional<LightEstimates> parted(const renderer::RayTracer& tracer, const LightResponse& response,
-                                     const Observations& observations, const std::vector<Column>& indirect,
-                                     const LightEstimates& lights) {
-  const std::vector<std::size_t> rows = evenly_spread(response.receiver_count(), kSome);
-  const DirectlyLit some(tracer, response, samples_of(response, rows));
-  const Observations of_some = rows_of(observations, rows);
-  std::vector<Column> indirect_of_some;
-  for (const Column& column : indirect) indirect_of_some.push_back(column(rows, Eigen::all));
-  const LightEstimates whole = with_indirect(lights, indirect_of_some);
+std::optional<LightEstimates> parted(const renderer::RayTracer& tracer, const SettlingBench& all,
+                                     const std::vector<Column>& indirect, const LightEstimates& lights) {
+  const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
+  const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
+  const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows)};
+  Candidate whole{lights, rows_of(indirect, rows), indirect};
+  std::vector<Candidate> candidates = worth_trying(some, whole);
+  if (candidates.empty()) return {};
 
-  // Some of the receivers lead them most of the way.
-  const auto descend = [&](const std::vector<Column>& of_few, const std::vector<Column>& of_all, LightEstimates& set) {
-    descend_with_instruments(some.response(), of_some, of_few, set);
-    descend_with_instruments(response, observations, of_all, set);
-    fit_intensities_with_instruments(response, observations, of_all, set);
-    return residuals(response, observations, of_all, set);
-  };
-  const double squared_error = std::pow(error_of(some.response(), of_some, whole), 2);
-  const double of_all_squared = std::pow(error_of(response, observations, with_indirect(lights, indirect)), 2);
-  const Eigen::VectorXd before = residuals(response, observations, indirect, lights);
+  // Descents end here or there beside a shadow's edge: the lights of before come down as often. Most of the receivers
+  // that tell have not led any of them.
+  some.descend(whole.to_some, whole.lights);
+  const Column led = all.illumination(whole.to_all, whole.lights);
+  std::erase_if(candidates, [&](Candidate& parts) {
+    some.descend(parts.to_some, parts.lights);
+    return !all.explains_more(all.illumination(parts.to_all, parts.lights), led, kWorthTrying, kPromising);
+  });
+  if (candidates.empty()) return {};
+  all.descend(whole.to_all, whole.lights);
+  const Column before = all.illumination(indirect, lights), again = all.illumination(whole.to_all, whole.lights);
+  Column least = relative_error(all.observations, again) < relative_error(all.observations, before) ? again : before;
   std::optional<LightEstimates> best;
-  double least = before.sum();
-  for (LightEstimates& split : propose_splits(some.response(), of_some, whole, kMostSplits)) {
-    if (std::pow(error_of(some.response(), of_some, split), 2) > (1 - kWorthTrying) * squared_error) continue;
-    Parted parts = taken_apart(std::move(split), whole);
-    std::vector<Column> of_all;
-    for (const std::size_t j : parts.part_of) of_all.push_back(indirect[j]);
-    const Eigen::VectorXd after = descend(parts.indirect, of_all, parts.lights);
-    if (!(after.sum() < least) || !clearly_smaller(before, after, kSignificant)) continue;
-    const double squared = std::pow(error_of(response, observations, with_indirect(parts.lights, of_all)), 2);
-    if (squared > (1 - kGain) * of_all_squared) continue;
-    // Descents end here or there beside a shadow's edge: one more of them is to do no better.
-    LightEstimates again = lights;
-    if (!clearly_smaller(descend(indirect_of_some, indirect, again), after, kSignificant)) continue;
-    least = after.sum();
+  for (Candidate& parts : candidates) {
+    all.descend(parts.to_all, parts.lights);
+    Column brought = all.illumination(parts.to_all, parts.lights);
+    if (!all.explains_more(brought, least, kGain, kSignificant)) continue;
+    least = std::move(brought);
     best = std::move(parts.lights);
   }
   return best;

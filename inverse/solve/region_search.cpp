@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/optimize_simplex.h"
@@ -25,7 +26,7 @@ constexpr double kClearlyBetter = 0.9;  // of an error, or less
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
   const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
-  const auto samples = samples_at(problem.target, draw.chosen);
+  const auto samples = numerics::chosen_from(problem.target.receivers.samples, draw.chosen);
   settings.seed = fresh_seed(basis.options.seed, 5);
   Observations observations = observe_target(
       problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fill_up_lights.h"
-#include "inverse/solve/held_out.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/parted_lights.h"
@@ -26,7 +26,8 @@ constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone i
 constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
 constexpr double kHardlySeen = 0.02;  // of the target's norm: the same of the weakest …
 constexpr std::size_t kMostWeak = 4;  // … few
-constexpr double kGain = 0.01;        // of the squared error: what a light must explain
+constexpr double kGain = 0.01;        // of the squared error: what a light must explain …
+constexpr double kSignificant = 3;    // … and standard errors
 
 // Lights that may move, as they were traced and as they are now.
 struct FreeLights {
@@ -47,36 +48,10 @@ struct FreeLights {
   }
 };
 
-// Receivers, and what they want of the free lights.
-struct Bench {
-  const LightResponse& response;
-  Observations observations;
-
-  void descend(FreeLights& free) const {
-    descend_with_instruments(response, observations, free.indirect, free.now);
-    fit_intensities_with_instruments(response, observations, free.indirect, free.now);
-  }
-  Column illumination(const FreeLights& free) const {
-    LightEstimates lights = free.now;
-    for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = free.indirect[j];
-    return illumination_of(response, lights);
-  }
-  // Whether a light more explains so much that it is there, and not what is wrong with a few receivers.
-  bool is_needed(const FreeLights& with_it, const FreeLights& without) const {
-    const Column with = illumination(with_it), others = illumination(without);
-    const double error = relative_error(observations, with), of_others = relative_error(observations, others);
-    return of_others * of_others > (1 + kGain) * error * error &&
-           clearly_smaller(relative_residuals(observations, others), relative_residuals(observations, with));
-  }
-  LightIntervals intervals(const FreeLights& free) const {
-    return intervals_with_instruments(response, observations, free.indirect, free.now);
-  }
-  double norm(const Column& light) const { return (observations.sqrt_weight.asDiagonal() * light).norm(); }
-};
-
 // Those whose intensity may as well be none, and the weakest few of those that light so little that they may make good
 // what is wrong with the others; in their order.
-std::vector<std::size_t> doubtful_ones(const Bench& bench, const FreeLights& free, const LightIntervals& intervals) {
+std::vector<std::size_t> doubtful_ones(const SettlingBench& bench, const FreeLights& free,
+                                       const LightIntervals& intervals) {
   std::vector<std::pair<double, std::size_t>> by_share;
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     by_share.emplace_back(bench.norm(free.brought[j]) / bench.observations.target_norm, j);
@@ -93,18 +68,20 @@ std::vector<std::size_t> doubtful_ones(const Bench& bench, const FreeLights& fre
 }
 
 // True: these lights went, as the others do as well without.
-bool remove_if_needless(const Bench& bench, const std::vector<std::size_t>& doubtful, FreeLights& free) {
+bool remove_if_needless(const SettlingBench& bench, const std::vector<std::size_t>& doubtful, FreeLights& free) {
   FreeLights others = free;
   for (auto j = doubtful.rbegin(); j != doubtful.rend(); ++j) others.remove(*j);
   if (others.now.empty()) return false;
-  bench.descend(others);
-  if (bench.is_needed(free, others)) return false;
+  bench.descend(others.indirect, others.now);
+  const Column with = bench.illumination(free.indirect, free.now);
+  const Column without = bench.illumination(others.indirect, others.now);
+  if (bench.explains_more(with, without, kGain, kSignificant)) return false;
   free = std::move(others);
   return true;
 }
 
 // Several may make good together what is wrong with the others, so that each of them seems to be needed.
-bool remove_some(const Bench& bench, const LightIntervals& intervals, FreeLights& free) {
+bool remove_some(const SettlingBench& bench, const LightIntervals& intervals, FreeLights& free) {
   const std::vector<std::size_t> doubtful = doubtful_ones(bench, free, intervals);
   if (doubtful.size() > 1 && remove_if_needless(bench, doubtful, free)) return true;
   return std::any_of(doubtful.begin(), doubtful.end(),
@@ -112,14 +89,16 @@ bool remove_some(const Bench& bench, const LightIntervals& intervals, FreeLights
 }
 
 // One always stays. Returns how sure those are that stay.
-LightIntervals remove_needless(const Bench& bench, FreeLights& free) {
-  LightIntervals intervals = bench.intervals(free);
-  while (free.now.size() > 1 && remove_some(bench, intervals, free)) intervals = bench.intervals(free);
+LightIntervals remove_needless(const SettlingBench& bench, FreeLights& free) {
+  LightIntervals intervals = bench.intervals(free.indirect, free.now);
+  while (free.now.size() > 1 && remove_some(bench, intervals, free)) {
+    intervals = bench.intervals(free.indirect, free.now);
+  }
   return intervals;
 }
 
 // Direct light alone tells of lights here: none of them may be hidden from nearly all receivers.
-bool any_hidden(const Bench& bench, const FreeLights& free) {
+bool any_hidden(const SettlingBench& bench, const FreeLights& free) {
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     const Column indirect = free.indirect[j] * free.traced[j].intensity.matrix().asDiagonal();
     if (bench.norm(free.brought[j] - indirect) < kLeastDirect * bench.norm(free.brought[j])) return true;
@@ -138,7 +117,7 @@ bool any_share_a_place(const LightEstimates& lights, double distance) {
 }
 
 // None has moved farther than this, weighed by its share of all light.
-bool at_rest(const Bench& bench, const FreeLights& free, double near) {
+bool at_rest(const SettlingBench& bench, const FreeLights& free, double near) {
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     const double share = bench.norm(free.brought[j]) / bench.observations.target_norm;
     if (share * (free.now[j].position - free.traced[j].position).norm() > near) return false;
@@ -164,7 +143,7 @@ struct Settling {
   Settling(const SolveProblem& problem, const LightResponse& search, std::size_t receivers, std::size_t held_lights)
       : target(problem.target),
         draw(draw_evenly(target, receivers)),
-        some(problem.tracer, search, samples_at(target, draw.chosen)),
+        some(problem.tracer, search, numerics::chosen_from(target.receivers.samples, draw.chosen)),
         all(problem.tracer, search, target.receivers.samples),
         held(held_lights),
         near(kNear * double(search.grid().region.diagonal())) {}
@@ -180,7 +159,7 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
   free.now = free.traced;
   const std::vector<Column> direct = direct_columns(with.some, free.now);
   for (std::size_t j = 0; j < free.now.size(); ++j) {
-    free.brought.push_back(column_of(values_at(traced.of_light[with.held + j], with.draw.chosen)));
+    free.brought.push_back(column_of(numerics::chosen_from(traced.of_light[with.held + j], with.draw.chosen)));
     free.indirect.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
     free.number.push_back(with.held + j);
   }
@@ -189,7 +168,8 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
 
 // What the receivers drawn want of the free lights.
 Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& traced) {
-  Observations observations = observe_target(with.target, with.draw, values_at(traced.all.value, with.draw.chosen));
+  Observations observations =
+      observe_target(with.target, with.draw, numerics::chosen_from(traced.all.value, with.draw.chosen));
   for (const Column& brought : free.brought) observations.wanted += brought;
   return with.held > 0 ? with_capped_weights(observations) : observations;
 }
@@ -286,15 +266,13 @@ class Settler {
       by_trace.settling_seconds = seconds_;
       if (any_share_a_place(lights, with_.near)) return by_trace;
       FreeLights free = free_lights(with_, lights, by_trace.traced);
-      const Bench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced)};
+      const SettlingBench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced)};
       if (any_hidden(bench, free)) return by_trace;
-      bench.descend(free);
+      bench.descend(free.indirect, free.now);
       const bool rests = at_rest(bench, free, kCarried * with_.near);
-      if (rests) {
-        carry_along_with(bench, first, lights, free);
-        if (part(bench, free, lights)) continue;
-      }
+      if (rests) carry_along_with(bench, first, lights, free);
       LightIntervals intervals = only_needed(bench, free);
+      if (rests && part(bench, free, lights)) continue;
       lights = joined(with_, lights, free);
       if (rests) {
         follow(with_, free, by_trace.traced);
@@ -326,9 +304,9 @@ class Settler {
     for (int draft = 0; draft < kDrafts; ++draft) {
       FreshTrace traced = trace_first_part_of(lights);
       FreeLights free = free_lights(on_the_way_, lights, traced);
-      const Bench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced)};
+      const SettlingBench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced)};
       const bool hidden = any_hidden(bench, free);
-      if (!hidden) bench.descend(free);
+      if (!hidden) bench.descend(free.indirect, free.now);
       const bool rests = hidden || at_rest(bench, free, on_the_way_.near);
       if (!rests) {
         earlier = std::exchange(before, lights);
@@ -342,18 +320,19 @@ class Settler {
     }
   }
 
-  void carry_along_with(const Bench& bench, const FreshTrace& first, const LightEstimates& lights, FreeLights& free) {
+  void carry_along_with(const SettlingBench& bench, const FreshTrace& first, const LightEstimates& lights,
+                        FreeLights& free) {
     if (at_rest(bench, free, kVeryNear * with_.near) || out_of_time()) return;
     finish("settling", lights.size(), false);
     carry_along(with_, first, trace_first_part_of(joined(with_, lights, free)), free);
-    bench.descend(free);
+    bench.descend(free.indirect, free.now);
   }
 
   // True: one of them has stood for two, and there is one more, on its way.
-  bool part(const Bench& bench, const FreeLights& free, LightEstimates& lights) {
+  bool part(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
     const bool may_part = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
     if (!may_part || partings_ == kMostPartings || out_of_time()) return false;
-    const auto more = parted(problem_.tracer, bench.response, bench.observations, free.indirect, free.now);
+    const auto more = parted(problem_.tracer, bench, free.indirect, free.now);
     if (!more) return false;
     ++partings_;
     lights.resize(with_.held);
@@ -364,9 +343,9 @@ class Settler {
   }
 
   // As many as asked for, or those that matter.
-  LightIntervals only_needed(const Bench& bench, FreeLights& free) const {
+  LightIntervals only_needed(const SettlingBench& bench, FreeLights& free) const {
     if (options_.exact_lights == 0) return remove_needless(bench, free);
-    LightIntervals intervals = bench.intervals(free);
+    LightIntervals intervals = bench.intervals(free.indirect, free.now);
     light_the_dark(free.now);
     return intervals;
   }

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
@@ -168,7 +169,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.important_vertices = int(importance.chosen.size());
   result.initial_seconds += clock.finish("important_vertices", {{"count", double(importance.chosen.size())}});
 
-  const auto samples = samples_at(problem.target, importance.chosen);
+  const auto samples = numerics::chosen_from(problem.target.receivers.samples, importance.chosen);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
   const SearchBasis basis{options,
                           control,

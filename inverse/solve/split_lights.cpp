@@ -32,16 +32,10 @@ Eigen::Matrix3d curvature(const LightResponse& response, const Column& weighted_
   return (second + second.transpose()) / 2;
 }
 
-struct Split {
-  LightEstimates lights;
-  double error = 0;
-};
-
 // Where the two parts of a light are tried, from where it stands along the direction in which it wants to part; of the
 // region's diagonal.
 constexpr std::array<std::array<double, 2>, 5> kParts{{{-0.02, 0.02}, {0, 0.04}, {0, -0.04}, {0, 0.08}, {0, -0.08}}};
 
-// The parts take the light's correction with them.
 Split split_light(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
                   std::vector<Column> columns, const Column& weighted_residual, std::size_t split) {
   const double diagonal = double(response.grid().region.diagonal());
@@ -54,9 +48,9 @@ Split split_light(const LightResponse& response, const Observations& observation
     return light;
   };
   columns.emplace_back();
-  Split best{{}, std::numeric_limits<double>::infinity()};
+  Split best{{}, split, std::numeric_limits<double>::infinity()};
   for (const auto& [one, other] : kParts) {
-    Split tried{lights};
+    Split tried{lights, split};
     tried.lights[split] = part(one);
     tried.lights.push_back(part(other));
     columns[split] = evaluate_column(response, tried.lights[split], Evaluation::kTracedVisibility);
@@ -69,8 +63,8 @@ Split split_light(const LightResponse& response, const Observations& observation
 
 }  // namespace
 
-std::vector<LightEstimates> propose_splits(const LightResponse& response, const Observations& observations,
-                                           const LightEstimates& lights, std::size_t most) {
+std::vector<Split> propose_splits(const LightResponse& response, const Observations& observations,
+                                  const LightEstimates& lights, std::size_t most) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   const Column residual = total_illumination(columns, lights, observations.wanted.rows()) - observations.wanted;
   const Column weighted = observations.sqrt_weight.cwiseAbs2().asDiagonal() * residual;
@@ -78,7 +72,7 @@ std::vector<LightEstimates> propose_splits(const LightResponse& response, const 
   renderer::parallel_for(lights.size(), [&](std::size_t j) {
     splits[j] = split_light(response, observations, lights, columns, weighted, j);
   });
-  return best_sets(std::move(splits), most);
+  return best_of(std::move(splits), most);
 }
 
 }  // namespace chiaro::inverse

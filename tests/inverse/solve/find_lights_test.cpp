@@ -226,12 +226,12 @@ TEST(SplitLights, PartsTwoLightsThatWereSeenAsOne) {
       refine_joint(problem.response(), problem.observations(), {{{2, 1.5, 2}, Array3d::Ones()}});
   const auto splits = propose_splits(problem.response(), problem.observations(), one.lights, 5);
   ASSERT_EQ(splits.size(), 1U);
-  ASSERT_EQ(splits[0].size(), 2U);
-  const auto columns = evaluate_columns(problem.response(), splits[0], Evaluation::kTracedVisibility);
+  ASSERT_EQ(splits[0].lights.size(), 2U);
+  const auto columns = evaluate_columns(problem.response(), splits[0].lights, Evaluation::kTracedVisibility);
   EXPECT_LT(relative_error(problem.observations(),
-                           total_illumination(columns, splits[0], problem.observations().wanted.rows())),
+                           total_illumination(columns, splits[0].lights, problem.observations().wanted.rows())),
             0.8 * one.error);
-  const JointRefinement two = refine_joint(problem.response(), problem.observations(), splits[0]);
+  const JointRefinement two = refine_joint(problem.response(), problem.observations(), splits[0].lights);
   EXPECT_LT(farthest_from(known, positions_of(two.lights)), 0.01);
 }
 
@@ -242,9 +242,9 @@ TEST(SplitLights, LeavesTheBrighterWhereItStands) {
       refine_joint(problem.response(), problem.observations(), {{{1.7, 1.5, 2}, Array3d::Ones()}});
   const auto splits = propose_splits(problem.response(), problem.observations(), one.lights, 1);
   ASSERT_EQ(splits.size(), 1U);
-  EXPECT_EQ(splits[0][0].position, one.lights[0].position);
-  EXPECT_GT(splits[0][0].intensity.sum(), splits[0][1].intensity.sum());
-  const JointRefinement two = refine_joint(problem.response(), problem.observations(), splits[0]);
+  EXPECT_EQ(splits[0].lights[0].position, one.lights[0].position);
+  EXPECT_GT(splits[0].lights[0].intensity.sum(), splits[0].lights[1].intensity.sum());
+  const JointRefinement two = refine_joint(problem.response(), problem.observations(), splits[0].lights);
   EXPECT_LT(farthest_from(known, positions_of(two.lights)), 0.01 * problem.diagonal());
 }
 
@@ -256,7 +256,8 @@ TEST(SplitLights, TriesTheLightThatStandsForTwoFirst) {
                                               {{known[2].position, Array3d::Ones()}, {{2, 1.5, 2}, Array3d::Ones()}});
   const auto splits = propose_splits(problem.response(), problem.observations(), merged.lights, 1);
   ASSERT_EQ(splits.size(), 1U);
-  EXPECT_LT((splits[0][0].position - merged.lights[0].position).norm(), 1e-12);
+  EXPECT_EQ(splits[0].parted, 1U);
+  EXPECT_LT((splits[0].lights[0].position - merged.lights[0].position).norm(), 1e-12);
 }
 
 TEST(ProposePairs, TakeTwoLightsFarApartForTheOneThatTheyPassedFor) {

@@ -83,5 +83,34 @@ TEST(Observations, ErrorsAndContributionsAreTheirDefinitions) {
   EXPECT_EQ(sum(0, 2), 5);
 }
 
+TEST(Observations, RowsAreWhatSomeOfTheReceiversSay) {
+  const LightEstimates lights = known_lights(2);
+  const DirectProblem problem(lights);
+  const std::vector<std::size_t> rows{3, 17, 90};
+  Observations all = problem.observations();
+  all.standard_error.setConstant(0.01);
+  const Observations some = rows_of(all, rows);
+  ASSERT_EQ(some.wanted.rows(), 3);
+  double squared = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    EXPECT_EQ(some.wanted.row(Eigen::Index(k)), all.wanted.row(Eigen::Index(rows[k])));
+    squared += all.target.row(Eigen::Index(rows[k])).squaredNorm();
+  }
+  EXPECT_NEAR(some.target_norm, std::sqrt(squared), 1e-12);
+  EXPECT_NEAR(some.noise, std::sqrt(3 * 3 * 1e-4 / squared), 1e-12);
+}
+
+TEST(Observations, RelativeResidualsCountBrightAndDimReceiversAlike) {
+  const DirectProblem problem(known_lights(2));
+  const Observations& observations = problem.observations();
+  const Eigen::VectorXd residuals = relative_residuals(observations, 1.1 * observations.wanted);
+  const Eigen::VectorXd brightness = observations.target.rowwise().norm();
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    // Of those darker than a tenth of the mean the error counts as if they were as bright as that.
+    const double share = std::min(1.0, brightness[i] / (0.1 * brightness.mean()));
+    EXPECT_NEAR(residuals[i], 0.1 * share, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::inverse
