@@ -7,6 +7,7 @@
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/instrumental_fit.h"
+#include "inverse/solve/needless_lights.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/parted_lights.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -23,79 +24,6 @@ constexpr double kNear = 1e-3;        // of the region's diagonal: of all light,
 constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at all …
 constexpr double kCarried = 10;       // … or, so many times as far, can be carried along
 constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
-constexpr double kDoubtful = 1.8;     // of the half width of its interval: a light so weak may be there for nothing
-constexpr double kHardlySeen = 0.02;  // of the target's norm: the same of the weakest …
-constexpr std::size_t kMostWeak = 4;  // … few
-constexpr double kGain = 0.01;        // of the squared error: what a light must explain …
-constexpr double kSignificant = 3;    // … and standard errors
-
-// Lights that may move, as they were traced and as they are now.
-struct FreeLights {
-  LightEstimates traced, now;
-  std::vector<Column> brought;      // by each as traced
-  std::vector<Column> indirect;     // of it by bounces, at 1 cd; once carried along, as where the light is now
-  std::vector<Column> carried;      // what that changed at all receivers; empty: nothing was
-  std::vector<std::size_t> number;  // in the trace
-
-  void remove(std::size_t j) {
-    const auto at = std::ptrdiff_t(j);
-    number.erase(number.begin() + at);
-    traced.erase(traced.begin() + at);
-    now.erase(now.begin() + at);
-    brought.erase(brought.begin() + at);
-    indirect.erase(indirect.begin() + at);
-    if (!carried.empty()) carried.erase(carried.begin() + at);
-  }
-};
-
-// Those whose intensity may as well be none, and the weakest few of those that light so little that they may make good
-// what is wrong with the others; in their order.
-std::vector<std::size_t> doubtful_ones(const SettlingBench& bench, const FreeLights& free,
-                                       const LightIntervals& intervals) {
-  std::vector<std::pair<double, std::size_t>> by_share;
-  for (std::size_t j = 0; j < free.now.size(); ++j) {
-    by_share.emplace_back(bench.norm(free.brought[j]) / bench.observations.target_norm, j);
-  }
-  std::sort(by_share.begin(), by_share.end());
-  std::vector<std::size_t> doubtful;
-  for (std::size_t k = 0; k < by_share.size(); ++k) {
-    const auto [share, j] = by_share[k];
-    const bool may_be_none = (free.now[j].intensity < kDoubtful * intervals.lights[j].intensity).all();
-    if (may_be_none || (k < kMostWeak && share < kHardlySeen)) doubtful.push_back(j);
-  }
-  std::sort(doubtful.begin(), doubtful.end());
-  return doubtful;
-}
-
-// True: these lights went, as the others do as well without.
-bool remove_if_needless(const SettlingBench& bench, const std::vector<std::size_t>& doubtful, FreeLights& free) {
-  FreeLights others = free;
-  for (auto j = doubtful.rbegin(); j != doubtful.rend(); ++j) others.remove(*j);
-  if (others.now.empty()) return false;
-  bench.descend(others.indirect, others.now);
-  const Column with = bench.illumination(free.indirect, free.now);
-  const Column without = bench.illumination(others.indirect, others.now);
-  if (bench.explains_more(with, without, kGain, kSignificant)) return false;
-  free = std::move(others);
-  return true;
-}
-
-// Several may make good together what is wrong with the others, so that each of them seems to be needed.
-bool remove_some(const SettlingBench& bench, const LightIntervals& intervals, FreeLights& free) {
-  const std::vector<std::size_t> doubtful = doubtful_ones(bench, free, intervals);
-  if (doubtful.size() > 1 && remove_if_needless(bench, doubtful, free)) return true;
-  return std::any_of(doubtful.begin(), doubtful.end(),
-                     [&](std::size_t j) { return remove_if_needless(bench, {j}, free); });
-}
-
-// One always stays. Returns how sure those are that stay.
-LightIntervals remove_needless(const SettlingBench& bench, FreeLights& free) {
-  LightIntervals intervals = bench.intervals(free.indirect, free.now);
-  while (free.now.size() > 1 && remove_some(bench, intervals, free)) {
-    intervals = bench.intervals(free.indirect, free.now);
-  }
-  return intervals;
-}
 
 // Direct light alone tells of lights here: none of them may be hidden from nearly all receivers.
 bool any_hidden(const SettlingBench& bench, const FreeLights& free) {
@@ -160,9 +88,10 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
   const std::vector<Column> direct = direct_columns(with.some, free.now);
   for (std::size_t j = 0; j < free.now.size(); ++j) {
     free.brought.push_back(column_of(numerics::chosen_from(traced.of_light[with.held + j], with.draw.chosen)));
-    free.indirect.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
+    free.indirect_traced.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
     free.number.push_back(with.held + j);
   }
+  free.indirect = free.indirect_traced;
   return free;
 }
 
@@ -201,9 +130,7 @@ void carry_along(const Settling& with, const FreshTrace& before, const FreshTrac
       const bool shines = free.traced[j].intensity[c] > 0 && free.now[j].intensity[c] > 0;
       change.col(c) = shines ? Eigen::VectorXd(change.col(c) - there[j].col(c)) : Eigen::VectorXd::Zero(change.rows());
     }
-    for (std::size_t k = 0; k < with.draw.chosen.size(); ++k) {
-      free.indirect[j].row(Eigen::Index(k)) += change.row(Eigen::Index(with.draw.chosen[k]));
-    }
+    free.indirect[j] = free.indirect_traced[j] + change(with.draw.chosen, Eigen::all);
   }
 }
 
@@ -270,8 +197,9 @@ class Settler {
       if (any_hidden(bench, free)) return by_trace;
       bench.descend(free.indirect, free.now);
       const bool rests = at_rest(bench, free, kCarried * with_.near);
-      if (rests) carry_along_with(bench, first, lights, free);
-      LightIntervals intervals = only_needed(bench, free);
+      const auto carried_along = [&](FreeLights& lights_now) { carry_along_with(bench, first, lights, lights_now); };
+      if (rests && !at_rest(bench, free, kVeryNear * with_.near)) carried_along(free);
+      LightIntervals intervals = only_needed(bench, rests ? CarryAlong(carried_along) : nullptr, free);
       if (rests && part(bench, free, lights)) continue;
       lights = joined(with_, lights, free);
       if (rests) {
@@ -320,10 +248,11 @@ class Settler {
     }
   }
 
+  // lights: as the first part was traced with.
   void carry_along_with(const SettlingBench& bench, const FreshTrace& first, const LightEstimates& lights,
                         FreeLights& free) {
-    if (at_rest(bench, free, kVeryNear * with_.near) || out_of_time()) return;
-    finish("settling", lights.size(), false);
+    if (out_of_time()) return;
+    finish("settling", free.now.size(), false);
     carry_along(with_, first, trace_first_part_of(joined(with_, lights, free)), free);
     bench.descend(free.indirect, free.now);
   }
@@ -343,8 +272,8 @@ class Settler {
   }
 
   // As many as asked for, or those that matter.
-  LightIntervals only_needed(const SettlingBench& bench, FreeLights& free) const {
-    if (options_.exact_lights == 0) return remove_needless(bench, free);
+  LightIntervals only_needed(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free) const {
+    if (options_.exact_lights == 0) return remove_needless(bench, carry_along, free);
     LightIntervals intervals = bench.intervals(free.indirect, free.now);
     light_the_dark(free.now);
     return intervals;

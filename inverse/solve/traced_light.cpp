@@ -12,7 +12,7 @@ namespace {
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
 constexpr int kFirstPart = 8;               // of the samples
-constexpr double kNoiseBesideTarget = 0.7;  // of the target's: adds a fifth to it
+constexpr double kNoiseBesideTarget = 0.5;  // of the target's: adds an eighth to it
 constexpr double kNoiseBesideError = 0.1;   // of what the lights leave unexplained
 
 bool has_fixed_light(const SolveProblem& problem) {

@@ -179,7 +179,6 @@ SolveResult solve_by(const Measurement& with, const Target& target, const std::v
                      SolveMethod method) {
   SolveOptions options;
   options.method = method;
-  options.verification_samples = 256;
   options.important_vertices = with.options.important_vertices;
   if (with.options.from_truth) options.earlier = {{truth, 0}};
   return solve({with.stage.tracer, target, with.bake.file(), {}, with.bake.settings(), {}}, options);
