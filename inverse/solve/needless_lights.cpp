@@ -1,6 +1,8 @@
 #include "inverse/solve/needless_lights.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -33,13 +35,14 @@ std::vector<std::size_t> doubtful_ones(const SettlingBench& bench, const FreeLig
   return doubtful;
 }
 
-class Fewer {
+// Tries of fewer lights than there are.
+class Tries {
  public:
-  Fewer(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free)
+  Tries(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free)
       : bench_(bench), carry_along_(carry_along), free_(free), all_(bench.illumination(free.indirect, free.now)) {}
 
-  // True: these went.
-  bool do_as_well_without(const std::vector<std::size_t>& gone) {
+  // True: these went, as the others do as well.
+  bool go_without(const std::vector<std::size_t>& gone) {
     if (gone.size() == free_.now.size()) return false;
     FreeLights fewer = without(free_, gone);
     bench_.descend(fewer.indirect, fewer.now);
@@ -49,8 +52,8 @@ class Fewer {
     return false;
   }
 
-  // The same of those that came nearest, whose light by bounces still was that of where they had been.
-  bool do_as_well_once_carried_along() {
+  // The same of those whose others came nearest, with light by bounces of where these have come to.
+  bool go_carried_along() {
     const double enough = std::sqrt(1 + kNearlyAsGood) * relative_error(bench_.observations, all_);
     if (!carry_along_ || !nearest_ || nearest_error_ > enough) return false;
     carry_along_(*nearest_);
@@ -80,10 +83,10 @@ class Fewer {
 bool remove_some(const SettlingBench& bench, const CarryAlong& carry_along, const LightIntervals& intervals,
                  FreeLights& free) {
   const std::vector<std::size_t> doubtful = doubtful_ones(bench, free, intervals);
-  Fewer fewer(bench, carry_along, free);
-  if (doubtful.size() > 1 && fewer.do_as_well_without(doubtful)) return true;
-  return std::any_of(doubtful.begin(), doubtful.end(), [&](std::size_t j) { return fewer.do_as_well_without({j}); }) ||
-         fewer.do_as_well_once_carried_along();
+  Tries tries(bench, carry_along, free);
+  if (doubtful.size() > 1 && tries.go_without(doubtful)) return true;
+  return std::any_of(doubtful.begin(), doubtful.end(), [&](std::size_t j) { return tries.go_without({j}); }) ||
+         tries.go_carried_along();
 }
 
 }  // namespace
