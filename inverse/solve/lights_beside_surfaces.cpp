@@ -81,27 +81,34 @@ class SingleLight {
     for (const std::size_t i : brightest_) relative_.sqrt_weight[Eigen::Index(i)] = bound_[Eigen::Index(i)];
   }
 
-  // Nothing where no light may stand near the brightest receivers.
+  // Nothing where no light may stand near the brightest receivers, or where one farther away explains them better.
   std::optional<LightEstimate> find() {
     Place best;
     for (const Place& start : starts()) {
       const Place refined = refine(start);
       if (refined.misfit < best.misfit) best = refined;
     }
-    if (!std::isfinite(best.misfit)) return std::nullopt;
+    if (!std::isfinite(best.misfit) || distance_from_brightest(best.light.position) > kFarthest * diagonal()) return {};
     return calibrated(best);
   }
 
   LightEstimate find_near(const Eigen::Vector3d& position) {
-    Place start{{position, Eigen::Array3d::Zero()}, 0, std::numeric_limits<double>::infinity()};
-    for (const std::size_t i : brightest_) {
-      start.distance = std::min(start.distance, (position - to_eigen(response_.receivers()[i].position)).norm());
-    }
-    start.distance = std::max(start.distance, double(kNearest * response_.grid().region.diagonal()));
-    return calibrated(start);
+    const double distance = std::max(distance_from_brightest(position), double(kNearest) * diagonal());
+    return calibrated({{position, Eigen::Array3d::Zero()}, 0, distance});
   }
 
  private:
+  double diagonal() const { return double(response_.grid().region.diagonal()); }
+
+  // Of the nearest of them.
+  double distance_from_brightest(const Eigen::Vector3d& position) const {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const std::size_t i : brightest_) {
+      distance = std::min(distance, (position - to_eigen(response_.receivers()[i].position)).norm());
+    }
+    return distance;
+  }
+
   LightEstimate calibrated(Place place) {
     for (int round = 0; round < kCalibrations; ++round) {
       calibrate(place.light.position);

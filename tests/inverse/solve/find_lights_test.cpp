@@ -6,7 +6,6 @@
 #include "inverse/solve/insertion.h"
 #include "inverse/solve/light_clusters.h"
 #include "inverse/solve/light_distribution.h"
-#include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/optimize_simplex.h"
 #include "inverse/solve/pair_of_lights.h"
 #include "inverse/solve/refine_joint.h"
@@ -279,21 +278,6 @@ TEST(ProposePairs, TakeTwoLightsFarApartForTheOneThatTheyPassedFor) {
   EXPECT_LT(farthest_from(known, positions_of(three.lights)), 0.01);
   EXPECT_EQ(propose_pairs(problem.response(), problem.observations(), merged.lights, 1).size(), 1U);
   EXPECT_TRUE(propose_pairs(problem.response(), problem.observations(), {}, 1).empty());
-}
-
-TEST(LightsBesideSurfaces, AreNoneWhereNoneOutshinesTheRest) {
-  const DirectProblem problem(known_lights(3));
-  EXPECT_TRUE(find_lights_beside_surfaces(problem.response(), problem.exact(), problem.observations(), 10).empty());
-}
-
-TEST(LightsBesideSurfaces, AreNoneWhereAFewReceiversStandForMany) {
-  const DirectProblem problem(known_lights(3));
-  Observations drawn = problem.observations();
-  for (const Eigen::Index i : {20, 110, 200}) {
-    drawn.stands_for[i] = 1000;
-    drawn.sqrt_weight[i] = std::sqrt(1000.0);
-  }
-  EXPECT_TRUE(find_lights_beside_surfaces(problem.response(), problem.exact(), drawn, 10).empty());
 }
 
 class CountedLights : public ::testing::TestWithParam<std::size_t> {};
