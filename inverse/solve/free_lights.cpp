@@ -2,18 +2,16 @@
 
 namespace chiaro::inverse {
 
-void FreeLights::remove(std::size_t j) {
-  const auto at = std::ptrdiff_t(j);
-  number.erase(number.begin() + at);
-  traced.erase(traced.begin() + at);
-  now.erase(now.begin() + at);
-  for (std::vector<Column>* columns : {&brought, &indirect_traced, &indirect, &carried}) {
-    if (!columns->empty()) columns->erase(columns->begin() + at);
-  }
-}
-
 FreeLights without(FreeLights free, const std::vector<std::size_t>& gone) {
-  for (auto j = gone.rbegin(); j != gone.rend(); ++j) free.remove(*j);
+  for (auto j = gone.rbegin(); j != gone.rend(); ++j) {
+    const auto at = std::ptrdiff_t(*j);
+    free.number.erase(free.number.begin() + at);
+    free.traced.erase(free.traced.begin() + at);
+    free.now.erase(free.now.begin() + at);
+    for (std::vector<Column>* columns : {&free.brought, &free.indirect_traced, &free.indirect, &free.carried}) {
+      if (!columns->empty()) columns->erase(columns->begin() + at);
+    }
+  }
   return free;
 }
 

@@ -12,8 +12,6 @@ struct FreeLights {
   std::vector<Column> indirect;         // the same where the light is now: that, until it is carried along
   std::vector<Column> carried;          // what that changed at all receivers; empty: nothing was
   std::vector<std::size_t> number;      // in the trace
-
-  void remove(std::size_t j);
 };
 
 // What is left without some of them, in ascending order.

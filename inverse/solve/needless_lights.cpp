@@ -46,8 +46,9 @@ class Tries {
     if (gone.size() == free_.now.size()) return false;
     FreeLights fewer = without(free_, gone);
     bench_.descend(fewer.indirect, fewer.now);
-    if (take(fewer)) return true;
-    const double error = error_of(fewer);
+    const Column left = bench_.illumination(fewer.indirect, fewer.now);
+    if (take(fewer, left)) return true;
+    const double error = relative_error(bench_.observations, left);
     if (error < nearest_error_) nearest_error_ = error, nearest_ = std::move(fewer);
     return false;
   }
@@ -57,16 +58,13 @@ class Tries {
     const double enough = std::sqrt(1 + kNearlyAsGood) * relative_error(bench_.observations, all_);
     if (!carry_along_ || !nearest_ || nearest_error_ > enough) return false;
     carry_along_(*nearest_);
-    return take(*nearest_);
+    return take(*nearest_, bench_.illumination(nearest_->indirect, nearest_->now));
   }
 
  private:
-  double error_of(const FreeLights& lights) const {
-    return relative_error(bench_.observations, bench_.illumination(lights.indirect, lights.now));
-  }
-
-  bool take(FreeLights& fewer) {
-    if (bench_.explains_more(all_, bench_.illumination(fewer.indirect, fewer.now), kGain, kSignificant)) return false;
+  // Those that do as well; left: what they bring.
+  bool take(FreeLights& fewer, const Column& left) {
+    if (bench_.explains_more(all_, left, kGain, kSignificant)) return false;
     free_ = std::move(fewer);
     return true;
   }
