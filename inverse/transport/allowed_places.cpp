@@ -40,8 +40,10 @@ Box3f grown(const Box3f& box, double by) {
   return {box.min - room, box.max + room};
 }
 
-// As positions are given out.
-Vector3d as_float(const Vector3d& position) { return to_eigen(to_vec3f(position)); }
+// What is pushed so far from something at this position stays as far once rounded to floats.
+double farther(double distance, const Vector3d& position) {
+  return distance * (1 + kFarther) + double(std::numeric_limits<float>::epsilon()) * position.cwiseAbs().maxCoeff();
+}
 
 double tolerance(double clearance) { return std::max(kHanging * clearance, kHangingAt); }
 
@@ -134,7 +136,7 @@ bool AllowedPlaces::clear_of_surfaces(const Vector3d& position) const {
 
 // One step, away from the nearest.
 Vector3d AllowedPlaces::away_from_surfaces(const Vector3d& position) const {
-  const double distance = rules_.surface_distance * (1 + kFarther);
+  const double distance = farther(rules_.surface_distance, position);
   const auto near = surfaces_ ? surfaces_->find(position, distance) : std::nullopt;
   if (!near) return position;
   return near->point + distance * direction(near->point, position, near->normal);
@@ -174,8 +176,8 @@ std::optional<Vector3d> AllowedPlaces::nearest(const Vector3d& position) const {
   std::optional<Vector3d> best;
   const auto settle_by = [&](const auto& project) {
     Vector3d p = project(position);
-    for (int round = 0; round < kRounds && !contains(as_float(p)); ++round) p = project(away_from_surfaces(p));
-    p = surfaces_ || !mounts_.empty() ? as_float(p) : p;
+    for (int round = 0; round < kRounds && !contains(rounded_to_float(p)); ++round) p = project(away_from_surfaces(p));
+    p = surfaces_ || !mounts_.empty() ? rounded_to_float(p) : p;
     const bool nearer = !best || (p - position).norm() < (*best - position).norm();
     if (nearer && contains(p)) best = p;
   };
@@ -186,8 +188,8 @@ std::optional<Vector3d> AllowedPlaces::nearest(const Vector3d& position) const {
 
 bool AllowedPlaces::far_apart(const std::vector<Vector3d>& positions) const {
   for (std::size_t j = 0; rules_.light_distance > 0 && j < positions.size(); ++j) {
-    const Vector3d here = as_float(positions[j]);
-    const auto near = [&](const Vector3d& p) { return (as_float(p) - here).norm() < rules_.light_distance; };
+    const Vector3d here = rounded_to_float(positions[j]);
+    const auto near = [&](const Vector3d& p) { return (rounded_to_float(p) - here).norm() < rules_.light_distance; };
     if (std::any_of(stay_.begin(), stay_.end(), near)) return false;
     if (std::any_of(positions.begin(), positions.begin() + std::ptrdiff_t(j), near)) return false;
   }
@@ -196,15 +198,14 @@ bool AllowedPlaces::far_apart(const std::vector<Vector3d>& positions) const {
 
 // One step for each pair that is too close.
 void AllowedPlaces::push_apart(std::vector<Vector3d>& positions) const {
-  const double wanted = rules_.light_distance * (1 + kFarther);
   const Vector3d otherwise = Vector3d(1, 2, 3).normalized();
   for (std::size_t j = 0; j < positions.size(); ++j) {
     for (const Vector3d& fixed : stay_) {
-      const double lack = wanted - (positions[j] - fixed).norm();
+      const double lack = farther(rules_.light_distance, positions[j]) - (positions[j] - fixed).norm();
       if (lack > 0) positions[j] += lack * direction(fixed, positions[j], otherwise);
     }
     for (std::size_t k = 0; k < j; ++k) {
-      const double lack = wanted - (positions[j] - positions[k]).norm();
+      const double lack = farther(rules_.light_distance, positions[j]) - (positions[j] - positions[k]).norm();
       if (lack <= 0) continue;
       const Vector3d apart = direction(positions[k], positions[j], otherwise);
       positions[j] += lack / 2 * apart;

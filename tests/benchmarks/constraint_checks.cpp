@@ -144,7 +144,8 @@ void check_place(const renderer::Scene& scene, const LightConstraints& c, const 
   if (!c.surface_distance) return;
   const double distance = test::distance_to_surfaces(scene, position);
   if (distance < *c.surface_distance * (1 - kRounding)) {
-    found.push_back({"surface distance", fmt::format("{} m, wanted {}", distance, *c.surface_distance)});
+    found.push_back({"surface distance", fmt::format("{} m at ({}, {}, {}), wanted {}", distance, position.x(),
+                                                     position.y(), position.z(), *c.surface_distance)});
   }
 }
 

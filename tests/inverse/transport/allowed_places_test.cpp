@@ -59,6 +59,25 @@ TEST_F(Places, KeepTheirDistanceFromSurfaces) {
   EXPECT_GT(moved, 100);
 }
 
+// Distances of the size of what floats can say: none is undercut by a light as it is given out.
+TEST_F(Places, KeepSmallDistancesInFloats) {
+  for (const double distance : {4.1217881e-3, 1e-4, 1e-6}) {
+    const AllowedPlaces places(scene_, bounds_, {.surface_distance = distance});
+    int found = 0;
+    for (std::uint32_t k = 0; k < 300; ++k) {
+      Vector3d beside = random_position(k);
+      beside[k % 3] = double(bounds_.min[int(k % 3)]);
+      const auto place = places.nearest(beside);
+      if (!place) continue;  // where ball and floor meet
+      ++found;
+      const Vector3d given = to_eigen(to_vec3f(*place));
+      EXPECT_EQ(given, *place) << k;
+      EXPECT_GE(distance_to_surfaces(scene_, given), distance * (1 - 1e-12)) << k;
+    }
+    EXPECT_GE(found, 280) << distance;
+  }
+}
+
 TEST_F(Places, HangInFrontOfANode) {
   const std::string node = scene_.instances.back().name;
   ASSERT_FALSE(node.empty());
