@@ -10,11 +10,12 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr std::size_t kMostInsertions = 3;
-constexpr std::size_t kDarkest = 16;  // receivers in front of which a light is tried …
-constexpr std::size_t kTraced = 12;   // … of each distance, those that explain most if nothing is in the way, …
-constexpr float kFarthest = 0.05F;    // … from this part of the region's diagonal …
-constexpr float kNearest = 0.0005F;   // … down to this one …
-constexpr float kStep = 2.0F;         // … in these steps
+constexpr std::size_t kDarkest = 16;      // receivers in front of which a light is tried …
+constexpr std::size_t kTraced = 12;       // … of each distance, those that explain most if nothing is in the way, …
+constexpr std::size_t kTracedOfAll = 48;  // the same of all places there are
+constexpr float kFarthest = 0.05F;        // … from this part of the region's diagonal …
+constexpr float kNearest = 0.0005F;       // … down to this one …
+constexpr float kStep = 2.0F;             // … in these steps
 // Along the normal, and around it at 30 and at 60 degrees.
 constexpr Vec3f kDirections[] = {{0, 0, 1},           {.5F, 0, .87F},    {-.25F, .43F, .87F}, {-.25F, -.43F, .87F},
                                  {.87F, 0, .5F},      {.43F, .75F, .5F}, {-.43F, .75F, .5F},  {-.87F, 0, .5F},
@@ -79,21 +80,34 @@ std::vector<std::size_t> darkest_receivers(const Observations& residual) {
   return darkest;
 }
 
-// Those from which most is explained if nothing is in the way.
+// Those from which most is explained if nothing is in the way, so many at most.
 std::vector<Eigen::Vector3d> most_promising(const LightResponse& response, const IntensityGain& explains,
-                                            const std::vector<Eigen::Vector3d>& places) {
+                                            const std::vector<Eigen::Vector3d>& places, std::size_t most) {
   std::vector<std::pair<double, std::size_t>> gain(places.size());
   renderer::parallel_for(places.size(), [&](std::size_t j) {
     gain[j] = {-explains.of_grey(response.unoccluded(places[j])), j};
   });
-  const std::size_t count = std::min(kTraced, places.size());
+  const std::size_t count = std::min(most, places.size());
   std::partial_sort(gain.begin(), gain.begin() + std::ptrdiff_t(count), gain.end());
   std::vector<Eigen::Vector3d> promising;
   for (std::size_t k = 0; k < count; ++k) promising.push_back(places[gain[k].second]);
   return promising;
 }
 
+std::optional<Insertion> best_by_direct_light(const LightResponse& response, const IntensityGain& explains,
+                                              const std::vector<Eigen::Vector3d>& places) {
+  return best_insertion(explains, places, [&](std::size_t j) { return response.direct(places[j]); });
+}
+
 }  // namespace
+
+std::optional<LightEstimate> propose_directly_lit(const LightResponse& response, const Observations& residual,
+                                                  const std::vector<Eigen::Vector3d>& places, double least_gain) {
+  const IntensityGain explains(residual);
+  const auto best = best_by_direct_light(response, explains, most_promising(response, explains, places, kTracedOfAll));
+  if (!best || best->gain <= least_gain) return std::nullopt;
+  return best->light;
+}
 
 double fit_intensity(const Observations& observations, const Column& column, LightEstimate& light) {
   return IntensityGain(observations).fit(column, light);
@@ -120,10 +134,10 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
   std::vector<Insertion> insertions;
   for (float t = kFarthest; t > kNearest; t /= kStep) {
-    const std::vector<Eigen::Vector3d> places =
-        most_promising(response, explains, places_in_front(response, darkest, t * response.grid().region.diagonal()));
-    // By direct light alone: the grid's indirect light says nothing about a place inside a fixture.
-    auto best = best_insertion(explains, places, [&](std::size_t j) { return response.direct(places[j]); });
+    const std::vector<Eigen::Vector3d> places = most_promising(
+        response, explains, places_in_front(response, darkest, t * response.grid().region.diagonal()), kTraced);
+    // The grid's indirect light says nothing about a place inside a fixture.
+    auto best = best_by_direct_light(response, explains, places);
     if (!best) continue;
     best->light.correction = -response.interpolated_indirect(best->light.position);
     insertions.push_back(std::move(*best));

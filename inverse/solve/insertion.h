@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -10,6 +12,11 @@ namespace chiaro::inverse {
 // Schiebinger, Recht, The alternating descent conditional gradient method for sparse inverse problems, 2017.
 LightEstimates propose_insertions(const LightResponse& response, const Observations& observations,
                                   const LightEstimates& lights);
+
+// The place of these whose direct light explains most of `residual`, brightness fitted; nothing where none explains as
+// much as this (squared norm, weighted).
+std::optional<LightEstimate> propose_directly_lit(const LightResponse& response, const Observations& residual,
+                                                  const std::vector<Eigen::Vector3d>& places, double least_gain);
 
 // The intensity with which a light of this column explains most of what is wanted, and how much (squared norm).
 double fit_intensity(const Observations& observations, const Column& column, LightEstimate& light);

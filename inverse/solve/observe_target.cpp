@@ -1,21 +1,64 @@
 #include "inverse/solve/observe_target.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "inverse/solve/pooled_errors.h"
+#include "inverse/transport/receivers.h"
 
 namespace chiaro::inverse {
 
-ReceiverDraw draw_evenly(const Target& target, std::size_t most) {
+namespace {
+
+std::vector<std::size_t> of_positive_weight(const Target& target) {
   std::vector<std::size_t> weighted;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
     if (target.weight[i] > 0) weighted.push_back(i);
   }
+  return weighted;
+}
+
+struct Drawn {
+  std::size_t receiver;
+  double probability;
+};
+
+std::vector<Drawn> evenly_of(const std::vector<std::size_t>& receivers, std::size_t most) {
+  std::vector<Drawn> drawn;
+  for (const std::size_t k : evenly_spread(receivers.size(), most)) drawn.push_back({receivers[k], 1});
+  for (Drawn& one : drawn) one.probability = double(drawn.size()) / double(receivers.size());
+  return drawn;
+}
+
+ReceiverDraw in_order(std::vector<Drawn> drawn) {
+  std::sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) { return a.receiver < b.receiver; });
   ReceiverDraw draw;
-  const std::size_t count = std::min(most, weighted.size());
-  for (std::size_t k = 0; k < count; ++k) draw.chosen.push_back(weighted[k * weighted.size() / count]);
-  draw.probability.assign(count, double(count) / double(std::max<std::size_t>(weighted.size(), 1)));
+  for (const Drawn& one : drawn) {
+    draw.chosen.push_back(one.receiver);
+    draw.probability.push_back(one.probability);
+  }
   return draw;
+}
+
+}  // namespace
+
+ReceiverDraw draw_evenly(const Target& target, std::size_t most) {
+  return in_order(evenly_of(of_positive_weight(target), most));
+}
+
+ReceiverDraw draw_brightest_and_evenly(const Target& target, const Eigen::VectorXd& brightness, std::size_t most) {
+  std::vector<std::size_t> receivers = of_positive_weight(target);
+  if (receivers.size() <= most) return draw_evenly(target, most);
+  const auto bright = receivers.begin() + std::ptrdiff_t(most / 2);
+  std::nth_element(receivers.begin(), bright, receivers.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(-brightness[Eigen::Index(a)], a) < std::pair(-brightness[Eigen::Index(b)], b);
+  });
+  std::vector<std::size_t> rest(bright, receivers.end());
+  std::sort(rest.begin(), rest.end());
+  std::vector<Drawn> drawn = evenly_of(rest, most - most / 2);
+  std::for_each(receivers.begin(), bright, [&](std::size_t receiver) { drawn.push_back({receiver, 1}); });
+  return in_order(std::move(drawn));
 }
 
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed) {

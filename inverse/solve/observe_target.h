@@ -13,6 +13,9 @@ struct ReceiverDraw {
 
 // At most `most` receivers of positive weight, spread evenly over all of them.
 ReceiverDraw draw_evenly(const Target& target, std::size_t most);
+// Where there are more, half of them are the brightest by this, of every receiver of the target, and the others spread
+// evenly over the rest: the little that a light shines upon from near by tells most of where it is.
+ReceiverDraw draw_brightest_and_evenly(const Target& target, const Eigen::VectorXd& brightness, std::size_t most);
 
 // What (3.6) asks of these receivers, each by itself. `fixed`: their light without the lights sought, cd/m².
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed);

@@ -6,16 +6,16 @@
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fill_up_lights.h"
+#include "inverse/solve/further_light.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/needless_lights.h"
 #include "inverse/solve/observe_target.h"
-#include "inverse/solve/parted_lights.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kRounds = 3, kDrafts = 5, kMostPartings = 3;
+constexpr int kRounds = 3, kDrafts = 5, kMostFurther = 3;
 constexpr double kLeastPaths = 2e6;   // of all receivers together …
 constexpr int kEnoughSamples = 256;   // … or so many per receiver
 constexpr std::size_t kMany = 30000;  // receivers at most …
@@ -60,26 +60,35 @@ bool is_worth_it(const SolveOptions& options, std::size_t receivers, std::size_t
   return precise && lights <= kMostLightsWithIntervals;
 }
 
-// The problem, and the receivers that lights are settled by.
-struct Settling {
-  const Target& target;
-  ReceiverDraw draw;
-  DirectlyLit some, all;  // receivers: those drawn, and all
-  std::size_t held;       // of the first lights, that stay
-  double near;            // metres
-
-  Settling(const SolveProblem& problem, const LightResponse& search, std::size_t receivers, std::size_t held_lights)
-      : target(problem.target),
-        draw(draw_evenly(target, receivers)),
-        some(problem.tracer, search, numerics::chosen_from(target.receivers.samples, draw.chosen)),
-        all(problem.tracer, search, target.receivers.samples),
-        held(held_lights),
-        near(kNear * double(search.grid().region.diagonal())) {}
-};
-
 std::vector<Column> direct_columns(const DirectlyLit& receivers, const LightEstimates& lights) {
   return evaluate_columns(receivers.response(), lights, Evaluation::kTracedVisibility);
 }
+
+// By direct light, which has no noise that would choose what it brightens.
+ReceiverDraw draw_by_direct_light(const Target& target, const DirectlyLit& all, const LightEstimates& lights,
+                                  std::size_t most) {
+  const Column direct = total_illumination(direct_columns(all, lights), lights, Eigen::Index(target.receivers.size()));
+  return draw_brightest_and_evenly(target, direct.rowwise().norm(), most);
+}
+
+// The problem, and the receivers that lights are settled by.
+struct Settling {
+  const Target& target;
+  DirectlyLit all;  // receivers
+  ReceiverDraw draw;
+  DirectlyLit some;  // receivers: those drawn
+  std::size_t held;  // of the first lights, that stay
+  double near;       // metres
+
+  Settling(const SolveProblem& problem, const LightResponse& search, const LightEstimates& lights,
+           std::size_t receivers, std::size_t held_lights)
+      : target(problem.target),
+        all(problem.tracer, search, target.receivers.samples),
+        draw(draw_by_direct_light(target, all, lights, receivers)),
+        some(problem.tracer, search, numerics::chosen_from(target.receivers.samples, draw.chosen)),
+        held(held_lights),
+        near(kNear * double(search.grid().region.diagonal())) {}
+};
 
 FreeLights free_lights(const Settling& with, const LightEstimates& lights, const FreshTrace& traced) {
   FreeLights free;
@@ -151,6 +160,12 @@ void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
   }
 }
 
+std::vector<Eigen::Vector3d> grid_places(const LightResponse& search) {
+  std::vector<Eigen::Vector3d> places;
+  for (const std::size_t j : search.grid_lights_near_places()) places.push_back(to_eigen(search.grid().positions[j]));
+  return places;
+}
+
 LightEstimates joined(const Settling& with, const LightEstimates& lights, const FreeLights& free) {
   LightEstimates all(lights.begin(), lights.begin() + std::ptrdiff_t(with.held));
   all.insert(all.end(), free.now.begin(), free.now.end());
@@ -177,13 +192,14 @@ void come_to_rest(const AllowedPlaces& places, const LightEstimates& earlier, co
 class Settler {
  public:
   Settler(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-          const LightResponse& search, std::size_t held, StageClock& clock)
+          const LightResponse& search, const LightEstimates& found, std::size_t held, StageClock& clock)
       : problem_(problem),
         options_(options),
         control_(control),
         clock_(clock),
-        with_(problem, search, kMany, held),
-        on_the_way_(problem, search, kSome, held) {}
+        with_(problem, search, found, kMany, held),
+        on_the_way_(problem, search, found, kSome, held),
+        places_(grid_places(search)) {}
 
   LightsByTrace settle(LightEstimates lights) {
     if (!any_share_a_place(lights, with_.near) && !out_of_time()) approach(lights);
@@ -200,7 +216,7 @@ class Settler {
       const auto carried_along = [&](FreeLights& lights_now) { carry_along_with(bench, first, lights, lights_now); };
       if (rests && !at_rest(bench, free, kVeryNear * with_.near)) carried_along(free);
       LightIntervals intervals = only_needed(bench, rests ? CarryAlong(carried_along) : nullptr, free);
-      if (rests && part(bench, free, lights)) continue;
+      if (rests && add_further(bench, free, lights)) continue;
       lights = joined(with_, lights, free);
       if (rests) {
         follow(with_, free, by_trace.traced);
@@ -209,7 +225,7 @@ class Settler {
       }
       finish("settling", lights.size(), rests);
       by_trace.settling_seconds = seconds_;
-      if (rests || round == kRounds + partings_ || out_of_time()) return by_trace;
+      if (rests || round == kRounds + further_lights_ || out_of_time()) return by_trace;
     }
   }
 
@@ -257,13 +273,13 @@ class Settler {
     bench.descend(free.indirect, free.now);
   }
 
-  // True: one of them has stood for two, and there is one more, on its way.
-  bool part(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
-    const bool may_part = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
-    if (!may_part || partings_ == kMostPartings || out_of_time()) return false;
-    const auto more = parted(problem_.tracer, bench, free.indirect, free.now);
+  // True: one was missing, and there is one more, on its way.
+  bool add_further(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
+    const bool may_add = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
+    if (!may_add || further_lights_ == kMostFurther || out_of_time()) return false;
+    const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, places_);
     if (!more) return false;
-    ++partings_;
+    ++further_lights_;
     lights.resize(with_.held);
     lights.insert(lights.end(), more->begin(), more->end());
     finish("settling", lights.size(), false);
@@ -284,9 +300,10 @@ class Settler {
   const renderer::Control& control_;
   StageClock& clock_;
   const Settling with_, on_the_way_;
-  std::optional<FreshTrace> first_part_{};  // of the trace where the lights are in the end; absent: they moved since
-  double seconds_ = 0;                      // without the traces
-  int partings_ = 0;
+  const std::vector<Eigen::Vector3d> places_;  // of the grid, where a light may have been missed
+  std::optional<FreshTrace> first_part_{};     // of the trace where the lights are in the end; absent: they moved since
+  double seconds_ = 0;                         // without the traces
+  int further_lights_ = 0;
 };
 
 }  // namespace
@@ -299,7 +316,7 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
     return trace_lights(problem, options, control, lights, clock);
   }
-  return Settler(problem, options, control, search, found.held, clock).settle(std::move(lights));
+  return Settler(problem, options, control, search, lights, found.held, clock).settle(lights);
 }
 
 }  // namespace chiaro::inverse

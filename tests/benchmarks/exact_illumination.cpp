@@ -1,8 +1,11 @@
 #include "tests/benchmarks/exact_illumination.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "inverse/transport/direct_light.h"
 #include "inverse/transport/gather_operator.h"
+#include "renderer/core/fork_join.h"
 
 namespace chiaro::benchmarks {
 namespace {
@@ -10,39 +13,56 @@ namespace {
 using renderer::PointLight;
 using renderer::Vec3f;
 
-constexpr std::size_t kJudged = 4000;  // receivers
+constexpr std::size_t kSome = 4000;  // receivers
+
+std::vector<Vec3f> difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
+  std::vector<Vec3f> difference(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
+  return difference;
+}
 
 }  // namespace
 
 ExactIllumination::ExactIllumination(const Stage& stage)
-    : tracer_(stage.tracer),
-      samples_(
-          inverse::select_receivers(stage.receivers, inverse::evenly_spread(stage.receivers.size(), kJudged)).samples),
-      gather_(inverse::make_gather_operator(tracer_, samples_, {})) {}
+    : stage_(stage),
+      some_(inverse::evenly_spread(stage.receivers.size(), kSome)),
+      gather_(
+          inverse::make_gather_operator(stage.tracer, inverse::select_receivers(stage.receivers, some_).samples, {})) {}
 
 double ExactIllumination::error(const std::vector<PointLight>& truth,
                                 const std::vector<inverse::FoundLight>& found) const {
   std::vector<PointLight> lights;
   for (const inverse::FoundLight& light : found) lights.push_back(std::get<renderer::PointLight>(light.light));
-  const std::vector<Vec3f> wanted = illumination(truth), got = illumination(lights);
-  double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    difference += double(length_squared(got[i] - wanted[i]));
-    norm += double(length_squared(wanted[i]));
-  }
-  return std::sqrt(difference / norm);
+  const Illumination wanted = illumination(truth), got = illumination(lights);
+  const Illumination off{difference(got.direct, wanted.direct), difference(got.indirect, wanted.indirect)};
+  return std::sqrt(squared_norm(off) / squared_norm(wanted));
 }
 
-std::vector<Vec3f> ExactIllumination::illumination(const std::vector<PointLight>& lights) const {
-  std::vector<Vec3f> sum(samples_.size()), positions;
+// Of all receivers: direct light's of all, and what indirect light makes of it where it is known.
+double ExactIllumination::squared_norm(const Illumination& illumination) const {
+  double direct = 0, by_bounces = 0;
+  for (const Vec3f& value : illumination.direct) direct += double(length_squared(value));
+  for (std::size_t k = 0; k < some_.size(); ++k) {
+    const Vec3f& without = illumination.direct[some_[k]];
+    by_bounces += double(length_squared(without + illumination.indirect[k])) - double(length_squared(without));
+  }
+  return std::max(0.0, direct + by_bounces * double(illumination.direct.size()) / double(some_.size()));
+}
+
+ExactIllumination::Illumination ExactIllumination::illumination(const std::vector<PointLight>& lights) const {
+  const std::vector<renderer::SurfaceSample>& samples = stage_.receivers.samples;
+  Illumination sum{std::vector<Vec3f>(samples.size()), std::vector<Vec3f>(some_.size())};
+  std::vector<Vec3f> positions;
   for (const PointLight& light : lights) positions.push_back(light.position);
-  const auto indirect = inverse::indirect_illumination_by_light(tracer_, gather_, positions);
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const bool lit = inverse::sees(tracer_, samples_[i], positions[j], std::uint32_t(i));
-      const float direct = lit ? inverse::unoccluded_illumination(samples_[i], positions[j]) : 0;
-      sum[i] += lights[j].intensity * (Vec3f{direct, direct, direct} + indirect[j][i]);
+  renderer::parallel_for(samples.size(), [&](std::size_t i) {
+    for (const PointLight& light : lights) {
+      if (!inverse::sees(stage_.tracer, samples[i], light.position, std::uint32_t(i))) continue;
+      sum.direct[i] += inverse::unoccluded_illumination(samples[i], light.position) * light.intensity;
     }
+  });
+  const auto indirect = inverse::indirect_illumination_by_light(stage_.tracer, gather_, positions);
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    for (std::size_t k = 0; k < some_.size(); ++k) sum.indirect[k] += lights[j].intensity * indirect[j][k];
   }
   return sum;
 }

@@ -7,20 +7,26 @@
 
 namespace chiaro::benchmarks {
 
-// Illumination of some of a stage's receivers without the noise of paths.
+// How far found lights are from the true ones, without the noise of paths: direct light of all of a stage's receivers,
+// light by bounces of some of them.
 class ExactIllumination {
  public:
-  // Keeps a reference to the stage's tracer.
+  // Keeps a reference to the stage.
   explicit ExactIllumination(const Stage& stage);
 
   // ‖illumination by the lights found − by the true ones‖ / ‖the latter‖
   double error(const std::vector<renderer::PointLight>& truth, const std::vector<inverse::FoundLight>& found) const;
 
  private:
-  std::vector<renderer::Vec3f> illumination(const std::vector<renderer::PointLight>& lights) const;
+  struct Illumination {
+    std::vector<renderer::Vec3f> direct;    // of all receivers
+    std::vector<renderer::Vec3f> indirect;  // of those in `some_`
+  };
+  Illumination illumination(const std::vector<renderer::PointLight>& lights) const;
+  double squared_norm(const Illumination& illumination) const;
 
-  const renderer::RayTracer& tracer_;
-  std::vector<renderer::SurfaceSample> samples_;
+  const Stage& stage_;
+  std::vector<std::size_t> some_;
   inverse::GatherOperator gather_;
 };
 

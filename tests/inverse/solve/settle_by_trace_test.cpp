@@ -129,6 +129,21 @@ TEST_F(SettleByTrace, ALightThatStoodForTwoParts) {
   EXPECT_EQ(settle(target, {known[0], whole}, two).lights.size(), 2U);
 }
 
+TEST_F(SettleByTrace, ALightThatWasMissedIsAdded) {
+  const LightEstimates known = known_lights(3);
+  const Target target = corner_.target(known, -1);
+  for (std::size_t missed = 0; missed < known.size(); ++missed) {
+    LightEstimates start = displaced(known, 0.002);
+    start.erase(start.begin() + std::ptrdiff_t(missed));
+    const LightsByTrace settled = settle(target, start);
+    ASSERT_EQ(settled.lights.size(), 3U) << missed;
+    EXPECT_LT(farthest_from(known, positions_of(settled.lights)), 2 * kPrecise) << missed;
+  }
+  SolveOptions two;
+  two.max_lights = 2;
+  EXPECT_EQ(settle(target, known_lights(2), two).lights.size(), 2U);
+}
+
 TEST_F(SettleByTrace, LightsThatAreHeldStay) {
   const LightEstimates known = known_lights(2);
   const LightEstimates start{known[1], displaced({known[0]}, 0.012)[0]};

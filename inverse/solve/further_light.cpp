@@ -1,0 +1,111 @@
+#include "inverse/solve/further_light.h"
+
+#include <cmath>
+#include <utility>
+
+#include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/directly_lit.h"
+#include "inverse/solve/insertion.h"
+#include "inverse/solve/split_lights.h"
+#include "inverse/transport/receivers.h"
+
+namespace chiaro::inverse {
+namespace {
+
+constexpr std::size_t kSome = 4000;     // receivers that tell where a further light may stand
+constexpr std::size_t kMostSplits = 2;  // that are followed
+constexpr double kWorthTrying = 0.004;  // of the squared error, that it takes off where it is proposed …
+constexpr double kPromising = 1;        // … and standard errors, by all receivers, once these have led it
+constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
+constexpr double kSignificant = 4;      // … and standard errors: the receivers that tell are those of the fit
+
+// Lights, and what each brings by bounces, at 1 cd, to some and to all receivers.
+struct Candidate {
+  LightEstimates lights;
+  std::vector<Column> to_some, to_all;
+
+  void descend_by_some(const SettlingBench& some) { some.descend(to_some, lights); }
+  void descend_by_all(const SettlingBench& all) { all.descend(to_all, lights); }
+};
+
+std::vector<Column> rows_of(const std::vector<Column>& columns, const std::vector<std::size_t>& rows) {
+  std::vector<Column> some;
+  for (const Column& column : columns) some.emplace_back(column(rows, Eigen::all));
+  return some;
+}
+
+Column zero_like(const Column& column) { return Column::Zero(column.rows(), 3); }
+
+// One of the lights in two parts, of which each brings by bounces what the whole did.
+Candidate in_parts(const Candidate& whole, Split split) {
+  Candidate parts{std::move(split.lights), whole.to_some, whole.to_all};
+  for (LightEstimate& light : parts.lights) light.correction = Column();
+  parts.to_some.push_back(whole.to_some[split.parted]);
+  parts.to_all.push_back(whole.to_all[split.parted]);
+  return parts;
+}
+
+Candidate with_one_more(const Candidate& before, const LightEstimate& light) {
+  Candidate more = before;
+  more.lights.push_back(light);
+  more.to_some.push_back(zero_like(before.to_some.front()));
+  more.to_all.push_back(zero_like(before.to_all.front()));
+  return more;
+}
+
+// Sets of one light more that take this part off the squared error where they are proposed.
+std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& before,
+                                    const std::vector<Eigen::Vector3d>& places) {
+  const LightEstimates lights = with_corrections(before.lights, before.to_some);
+  const Observations left = less(some.observations, some.response, lights);
+  const double squared_error = std::pow(some.norm(left.wanted), 2);
+  std::vector<Candidate> candidates;
+  for (Split& split : propose_splits(some.response, some.observations, lights, kMostSplits)) {
+    const double squared = std::pow(split.error * some.observations.target_norm, 2);
+    if (squared < (1 - kWorthTrying) * squared_error) candidates.push_back(in_parts(before, std::move(split)));
+  }
+  const auto missed = propose_directly_lit(some.response, left, places, kWorthTrying * squared_error);
+  if (missed) candidates.push_back(with_one_more(before, *missed));
+  return candidates;
+}
+
+}  // namespace
+
+std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& all,
+                                                 const std::vector<Column>& indirect, const LightEstimates& lights,
+                                                 const std::vector<Eigen::Vector3d>& places) {
+  const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
+  const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
+  const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows)};
+  Candidate now{lights, rows_of(indirect, rows), indirect};
+  std::vector<Candidate> candidates = worth_trying(some, now, places);
+  if (candidates.empty()) return {};
+
+  // Descents end here or there beside a shadow's edge: the lights of before come down as often. Most of the receivers
+  // that tell have not led any of them.
+  const auto brought_by = [&](const Candidate& candidate) {
+    return all.illumination(candidate.to_all, candidate.lights);
+  };
+  const Column before = brought_by(now);
+  now.descend_by_some(some);
+  const Column led = brought_by(now);
+  std::erase_if(candidates, [&](Candidate& more) {
+    more.descend_by_some(some);
+    return !all.explains_more(brought_by(more), led, kWorthTrying, kPromising);
+  });
+  if (candidates.empty()) return {};
+  now.descend_by_all(all);
+  const Column again = brought_by(now);
+  Column least = relative_error(all.observations, again) < relative_error(all.observations, before) ? again : before;
+  std::optional<LightEstimates> best;
+  for (Candidate& more : candidates) {
+    more.descend_by_all(all);
+    Column brought = brought_by(more);
+    if (!all.explains_more(brought, least, kGain, kSignificant)) continue;
+    least = std::move(brought);
+    best = std::move(more.lights);
+  }
+  return best;
+}
+
+}  // namespace chiaro::inverse
