@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include <unistd.h>
@@ -21,6 +22,7 @@ using renderer::Vec3f;
 constexpr float kApart = 0.05F, kFromSurfaces = 0.03F;  // of the diagonal
 constexpr double kLeastShare = 0.02;                    // of all illumination
 constexpr float kLeastIntensity = 5;                    // candela
+constexpr double kOutshine = 10;                        // times what surfaces emit
 constexpr float kIntensityRatio = 8;
 constexpr std::size_t kPlaces = 200;  // to choose from
 constexpr int kPilotSamples = 16;
@@ -45,14 +47,26 @@ double sum_of(const std::vector<Vec3f>& values) {
   return sum;
 }
 
-bool each_matters(const Stage& stage, const std::vector<PointLight>& lights) {
-  std::vector<double> given;
-  for (const PointLight& light : lights) {
-    given.push_back(sum_of(trace_illumination(stage.tracer, stage.some.samples, {light}, {8, -1, 77, false}).value));
-  }
-  double all = 0;
-  for (const double g : given) all += g;
-  return *std::min_element(given.begin(), given.end()) >= kLeastShare * all;
+double energy_of(const Stage& stage, const renderer::Lights& lights, bool emissive_surfaces) {
+  return sum_of(trace_illumination(stage.tracer, stage.some.samples, lights, {8, -1, 77, emissive_surfaces}).value);
+}
+
+std::vector<double> energies_of(const Stage& stage, const std::vector<PointLight>& lights) {
+  std::vector<double> energies;
+  for (const PointLight& light : lights) energies.push_back(energy_of(stage, {light}, false));
+  return energies;
+}
+
+bool each_matters(const std::vector<double>& energies) {
+  const double all = std::accumulate(energies.begin(), energies.end(), 0.0);
+  return *std::min_element(energies.begin(), energies.end()) >= kLeastShare * all;
+}
+
+// Where surfaces glow, as bright as leaves them little of the target's energy.
+void outshine_surfaces(const Stage& stage, const std::vector<double>& energies, std::vector<PointLight>& lights) {
+  const double emitted = energy_of(stage, {}, true);
+  const double brighter = kOutshine * emitted / std::accumulate(energies.begin(), energies.end(), 0.0);
+  for (PointLight& light : lights) light.intensity = std::max(1.0F, float(brighter)) * light.intensity;
 }
 
 Vec3f random_intensity(std::uint64_t seed, std::uint64_t attempt, std::uint32_t place) {
@@ -109,7 +123,11 @@ std::vector<PointLight> random_lights(const Stage& stage, SetNumber number) {
     for (std::uint32_t i = 0; i < places.size() && lights.size() < number.lights; ++i) {
       if (apart(stage, lights, places[i])) lights.push_back({"", places[i], random_intensity(seed, attempt, i)});
     }
-    if (lights.size() == number.lights && each_matters(stage, lights)) return lights;
+    if (lights.size() < number.lights) continue;
+    const std::vector<double> energies = energies_of(stage, lights);
+    if (!each_matters(energies)) continue;
+    outshine_surfaces(stage, energies, lights);
+    return lights;
   }
 }
 
