@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "inverse/solve/insertion.h"
-#include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -25,13 +24,7 @@ std::vector<Vector3d> positions_of(const LightEstimates& lights) {
 class FillingUp {
  public:
   FillingUp(const LightResponse& response, const Observations& observations)
-      : response_(response), observations_(observations) {
-    for (const std::size_t j : response.grid_lights_near_places()) {
-      if (const auto place = response.places().nearest(to_eigen(response.grid().positions[j]))) {
-        candidates_.push_back(*place);
-      }
-    }
-  }
+      : response_(response), observations_(observations), candidates_(response.places_near_grid_lights()) {}
 
   LightEstimates fill_up(LightEstimates lights, std::size_t wanted) const {
     while (lights.size() < wanted && (add_beside(lights) || add_where_others_make_room(lights))) continue;

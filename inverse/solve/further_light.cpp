@@ -74,6 +74,7 @@ std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& 
 std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& all,
                                                  const std::vector<Column>& indirect, const LightEstimates& lights,
                                                  const std::vector<Eigen::Vector3d>& places) {
+  if (lights.empty()) return {};
   const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
   const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
   const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows)};

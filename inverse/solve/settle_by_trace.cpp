@@ -67,6 +67,7 @@ std::vector<Column> direct_columns(const DirectlyLit& receivers, const LightEsti
 // By direct light, which has no noise that would choose what it brightens.
 ReceiverDraw draw_by_direct_light(const Target& target, const DirectlyLit& all, const LightEstimates& lights,
                                   std::size_t most) {
+  if (target.receivers.size() <= most) return draw_evenly(target, most);
   const Column direct = total_illumination(direct_columns(all, lights), lights, Eigen::Index(target.receivers.size()));
   return draw_brightest_and_evenly(target, direct.rowwise().norm(), most);
 }
@@ -160,12 +161,6 @@ void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
   }
 }
 
-std::vector<Eigen::Vector3d> grid_places(const LightResponse& search) {
-  std::vector<Eigen::Vector3d> places;
-  for (const std::size_t j : search.grid_lights_near_places()) places.push_back(to_eigen(search.grid().positions[j]));
-  return places;
-}
-
 LightEstimates joined(const Settling& with, const LightEstimates& lights, const FreeLights& free) {
   LightEstimates all(lights.begin(), lights.begin() + std::ptrdiff_t(with.held));
   all.insert(all.end(), free.now.begin(), free.now.end());
@@ -199,7 +194,7 @@ class Settler {
         clock_(clock),
         with_(problem, search, found, kMany, held),
         on_the_way_(problem, search, found, kSome, held),
-        places_(grid_places(search)) {}
+        places_(search.places_near_grid_lights()) {}
 
   LightsByTrace settle(LightEstimates lights) {
     if (!any_share_a_place(lights, with_.near) && !out_of_time()) approach(lights);
@@ -300,7 +295,7 @@ class Settler {
   const renderer::Control& control_;
   StageClock& clock_;
   const Settling with_, on_the_way_;
-  const std::vector<Eigen::Vector3d> places_;  // of the grid, where a light may have been missed
+  const std::vector<Eigen::Vector3d> places_;  // where a light may have been missed
   std::optional<FreshTrace> first_part_{};     // of the trace where the lights are in the end; absent: they moved since
   double seconds_ = 0;                         // without the traces
   int further_lights_ = 0;

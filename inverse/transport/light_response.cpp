@@ -64,6 +64,14 @@ LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<Surf
   CHIARO_CHECK(cache.receiver_count == receivers_.size());
 }
 
+std::vector<Vector3d> LightResponse::places_near_grid_lights() const {
+  std::vector<Vector3d> places;
+  for (const std::size_t j : near_places_) {
+    if (const auto place = places_.nearest(to_eigen(cache_.grid.positions[j]))) places.push_back(*place);
+  }
+  return places;
+}
+
 std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluation evaluation,
                                               const std::vector<GridWeight>& weights) const {
   std::vector<double> visible(receivers_.size(), 0);

@@ -46,6 +46,8 @@ class LightResponse {
   // Those of the grid's lights that have an allowed place no farther than a cell's diagonal; where none has, the
   // nearest.
   const std::vector<std::size_t>& grid_lights_near_places() const { return near_places_; }
+  // The allowed places nearest to them, of as many as one is found for.
+  std::vector<Eigen::Vector3d> places_near_grid_lights() const;
 
   // Positions outside the grid's region take the indirect part of the nearest point of its border.
   Column evaluate(const UnityLight& light, Evaluation evaluation) const;

@@ -51,7 +51,10 @@ TEST_F(ResponseOfARoom, TheNearestGridLightsStandInForPlacesFarFromAll) {
   const LightGrid corner = make_light_grid(tracer_, {.counts = {8, 6, 8}, .parts = {{{0, 0, 0}, {0.5F, 0.5F, 0.5F}}}});
   const TransportCache cache = bake(tracer_, receivers_, corner, settings(8, 0)).cache;
   const AllowedPlaces places(scene_, corner.region, {.boxes = {{{3, 2, 3}, {3.5F, 2.5F, 3.5F}}}});
-  EXPECT_FALSE(LightResponse(tracer_, receivers_.samples, cache, places).grid_lights_near_places().empty());
+  const LightResponse response(tracer_, receivers_.samples, cache, places);
+  EXPECT_FALSE(response.grid_lights_near_places().empty());
+  EXPECT_EQ(response.places_near_grid_lights().size(), response.grid_lights_near_places().size());
+  for (const Vector3d& place : response.places_near_grid_lights()) EXPECT_TRUE(places.contains(place));
 }
 
 TEST_F(ResponseOfARoom, GradientEqualsCentralDifferences) {
