@@ -29,6 +29,7 @@ constexpr double kNearNoise = 5;  // times the noise, or less: little else is le
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kStill = 5e-4;        // of the region's diagonal: indirect light hardly changes
 constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
+constexpr int kMany = 32;              // lights: no more than these are sought in order to find few
 constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
 constexpr std::size_t kMostSplits = 3, kMostPairs = 3;
 // Of many starts these tell which to follow.
@@ -74,6 +75,8 @@ class Search {
   };
 
   int most_lights() const { return options_.exact_lights > 0 ? options_.exact_lights : options_.max_lights; }
+  // The best set of few lights is one of more that some of them left.
+  int most_searched() const { return std::max(most_lights(), std::min(2 * most_lights() + 2, kMany)); }
 
   bool out_of_time() {
     out_of_time_ = out_of_time_ || (options_.time_limit > 0 && renderer::seconds_since(start_) > options_.time_limit);
@@ -125,7 +128,7 @@ class Search {
 
   // Until larger ones explain no more.
   void refine_cuts() {
-    const int sizes = std::min({tree_.tree.leaf_count, most_lights(), kMostCuts});
+    const int sizes = std::min({tree_.tree.leaf_count, most_searched(), kMostCuts});
     for (int size = 1; size <= sizes && !out_of_time(); size += kCutsAtOnce) {
       std::vector<LightEstimates> cuts;
       for (int k = size; k < std::min(size + kCutsAtOnce, sizes + 1); ++k) {
@@ -188,12 +191,12 @@ class Search {
   void insert_lights() {
     if (best_.size() < 2) consider_one_more({});
     int idle = cuts_are_enough_ ? 1 : 0;
-    for (std::size_t size = best_size(); idle < kIdleInsertions && int(size) < most_lights() && !out_of_time();
+    for (std::size_t size = best_size(); idle < kIdleInsertions && int(size) < most_searched() && !out_of_time();
          ++size) {
       if (size >= best_.size() || best_[size].lights.empty()) break;
       const std::size_t before = best_size();
       const double error = best_[before].error;
-      if (error <= observations_.noise * kNoiseMargin && options_.exact_lights == 0) break;
+      if (error <= observations_.noise * kNoiseMargin && int(size) >= options_.exact_lights) break;
       consider_one_more(best_[size].lights);
       const bool gained = best_size() > before || (best_.size() > size + 1 && best_[size + 1].error * kKnee < error);
       idle = gained ? 0 : idle + 1;
@@ -227,7 +230,7 @@ class Search {
     const auto exactly = std::size_t(std::max(0, options_.exact_lights));
     for (int round = 0; round < kMostRounds && !out_of_time(); ++round) {
       const std::size_t size = exactly > 0 ? exactly - 1 : best_size();
-      if (size == 0 || size >= best_.size() || int(size) >= most_lights()) return;
+      if (size == 0 || size >= best_.size() || int(size) >= most_searched()) return;
       if (size + 1 < best_.size() && best_[size + 1].error < best_[size].error) return;
       consider_one_more(best_[size].lights);
       if (exactly > 0 || best_size() == size) return;
@@ -272,10 +275,11 @@ class Search {
   LightCountResult result() {
     LightCountResult r;
     std::size_t size = best_.size() < 2 ? 0 : best_size();
-    if (options_.exact_lights > 0) size = std::min(std::size_t(options_.exact_lights), best_.size() - 1);
+    const std::size_t most = std::min(std::size_t(most_lights()), best_.size() - 1);
+    size = options_.exact_lights > 0 ? most : std::min(size, most);
     while (size > 0 && best_[size].lights.empty()) --size;
     if (size > 0) r.lights = best_[size].lights, r.error = best_[size].error;
-    for (std::size_t n = 1; n < best_.size(); ++n) r.sets.push_back(best_[n].lights);
+    for (std::size_t n = 1; n <= most; ++n) r.sets.push_back(best_[n].lights);
     r.refinements = refinements_;
     r.out_of_time = out_of_time_;
     return r;

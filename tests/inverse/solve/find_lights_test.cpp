@@ -11,6 +11,8 @@
 #include "inverse/solve/refine_joint.h"
 #include "inverse/solve/settle_positions.h"
 #include "inverse/solve/split_lights.h"
+#include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/sampler.h"
 #include "tests/inverse/solve/painted_corner.h"
 
 namespace chiaro::inverse {
@@ -282,6 +284,17 @@ TEST(ProposePairs, TakeTwoLightsFarApartForTheOneThatTheyPassedFor) {
 
 class CountedLights : public ::testing::TestWithParam<std::size_t> {};
 
+LightEstimates random_lights_of_the_corner(std::size_t count, std::uint32_t seed) {
+  LightEstimates lights;
+  for (std::uint32_t j = 0; j < count; ++j) {
+    renderer::Sampler sampler(seed, 0, j);
+    const Vec3f at = random_position({{0.4F, 0.4F, 0.4F}, {3.6F, 2.6F, 3.6F}}, sampler);
+    const renderer::Vec2f color = sampler.next_2d();
+    lights.push_back({to_eigen(at), {2 + 8 * double(color.x), 2 + 8 * double(color.y), 5}});
+  }
+  return lights;
+}
+
 TEST_P(CountedLights, AreCountedAndFound) {
   const LightEstimates known = known_lights(GetParam());
   const DirectProblem problem(known);
@@ -319,6 +332,28 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   options = {};
   options.time_limit = 1e-9;
   EXPECT_TRUE(choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
+}
+
+// Elimination leaves them of all: a search that never sees more lights than it may give ends far from these.
+TEST(ChooseLightCount, FewerThanThereAreAreAsGoodAsThoseOfTheWholeSearch) {
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    const DirectProblem problem(random_lights_of_the_corner(5, seed));
+    const LightTree tree = tree_of(problem);
+    const LightCountResult all = choose_light_count(problem.response(), problem.observations(), tree, {});
+    ASSERT_GE(all.sets.size(), 4U);
+    for (int count = 1; count < 4; ++count) {
+      const LightEstimates& best = all.sets[std::size_t(count) - 1];
+      const double error = relative_error(problem.observations(), illumination_of(problem.response(), best));
+      LightCountOptions exactly, at_most;
+      exactly.exact_lights = at_most.max_lights = count;
+      for (const LightCountOptions& options : {exactly, at_most}) {
+        const LightCountResult few = choose_light_count(problem.response(), problem.observations(), tree, options);
+        EXPECT_EQ(few.lights.size(), std::size_t(count));
+        EXPECT_EQ(few.sets.size(), std::size_t(count));
+        EXPECT_LT(few.error, 1.1 * error) << count << " of seed " << seed;
+      }
+    }
+  }
 }
 
 }  // namespace
