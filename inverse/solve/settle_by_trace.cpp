@@ -64,31 +64,30 @@ std::vector<Column> direct_columns(const DirectlyLit& receivers, const LightEsti
   return evaluate_columns(receivers.response(), lights, Evaluation::kTracedVisibility);
 }
 
-// By direct light, which has no noise that would choose what it brightens.
-ReceiverDraw draw_by_direct_light(const Target& target, const DirectlyLit& all, const LightEstimates& lights,
-                                  std::size_t most) {
-  if (target.receivers.size() <= most) return draw_evenly(target, most);
-  const Column direct = total_illumination(direct_columns(all, lights), lights, Eigen::Index(target.receivers.size()));
-  return draw_brightest_and_evenly(target, direct.rowwise().norm(), most);
+// By direct light, which has no noise that would choose what it brightens. Empty where all receivers are taken anyway.
+Eigen::VectorXd brightness_of(const DirectlyLit& receivers, const LightEstimates& lights) {
+  const std::size_t count = receivers.response().receiver_count();
+  if (count <= kSome) return {};
+  return total_illumination(direct_columns(receivers, lights), lights, Eigen::Index(count)).rowwise().norm();
 }
 
 // The problem, and the receivers that lights are settled by.
 struct Settling {
   const Target& target;
-  DirectlyLit all;  // receivers
+  const DirectlyLit& all;  // receivers
   ReceiverDraw draw;
   DirectlyLit some;  // receivers: those drawn
   std::size_t held;  // of the first lights, that stay
   double near;       // metres
 
-  Settling(const SolveProblem& problem, const LightResponse& search, const LightEstimates& lights,
+  Settling(const SolveProblem& problem, const DirectlyLit& all_receivers, const Eigen::VectorXd& brightness,
            std::size_t receivers, std::size_t held_lights)
       : target(problem.target),
-        all(problem.tracer, search, target.receivers.samples),
-        draw(draw_by_direct_light(target, all, lights, receivers)),
-        some(problem.tracer, search, numerics::chosen_from(target.receivers.samples, draw.chosen)),
+        all(all_receivers),
+        draw(draw_brightest_and_evenly(target, brightness, receivers)),
+        some(problem.tracer, all.response(), numerics::chosen_from(target.receivers.samples, draw.chosen)),
         held(held_lights),
-        near(kNear * double(search.grid().region.diagonal())) {}
+        near(kNear * double(all.response().grid().region.diagonal())) {}
 };
 
 FreeLights free_lights(const Settling& with, const LightEstimates& lights, const FreshTrace& traced) {
@@ -192,8 +191,10 @@ class Settler {
         options_(options),
         control_(control),
         clock_(clock),
-        with_(problem, search, found, kMany, held),
-        on_the_way_(problem, search, found, kSome, held),
+        all_(problem.tracer, search, problem.target.receivers.samples),
+        brightness_(brightness_of(all_, found)),
+        with_(problem, all_, brightness_, kMany, held),
+        on_the_way_(problem, all_, brightness_, kSome, held),
         places_(search.places_near_grid_lights()) {}
 
   LightsByTrace settle(LightEstimates lights) {
@@ -294,6 +295,8 @@ class Settler {
   const SolveOptions& options_;
   const renderer::Control& control_;
   StageClock& clock_;
+  const DirectlyLit all_;             // receivers
+  const Eigen::VectorXd brightness_;  // of each, under the lights as they were found
   const Settling with_, on_the_way_;
   const std::vector<Eigen::Vector3d> places_;  // where a light may have been missed
   std::optional<FreshTrace> first_part_{};     // of the trace where the lights are in the end; absent: they moved since

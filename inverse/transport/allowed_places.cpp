@@ -165,18 +165,19 @@ bool AllowedPlaces::hangs_on(const MountedSurface& mount, const Vector3d& positi
 }
 
 bool AllowedPlaces::contains(const Vector3d& position) const {
+  const Vector3d given = rounded_to_float(position);
   const bool in_box =
-      std::any_of(boxes_.begin(), boxes_.end(), [&](const Box3f& box) { return box.contains(to_vec3f(position)); });
+      std::any_of(boxes_.begin(), boxes_.end(), [&](const Box3f& box) { return box.contains(to_vec3f(given)); });
   const bool mounted =
-      std::any_of(mounts_.begin(), mounts_.end(), [&](const auto& mount) { return hangs_on(*mount, position); });
-  return (in_box || mounted) && clear_of_surfaces(position);
+      std::any_of(mounts_.begin(), mounts_.end(), [&](const auto& mount) { return hangs_on(*mount, given); });
+  return (in_box || mounted) && clear_of_surfaces(given);
 }
 
 std::optional<Vector3d> AllowedPlaces::nearest(const Vector3d& position) const {
   std::optional<Vector3d> best;
   const auto settle_by = [&](const auto& project) {
     Vector3d p = project(position);
-    for (int round = 0; round < kRounds && !contains(rounded_to_float(p)); ++round) p = project(away_from_surfaces(p));
+    for (int round = 0; round < kRounds && !contains(p); ++round) p = project(away_from_surfaces(p));
     p = surfaces_ || !mounts_.empty() ? rounded_to_float(p) : p;
     const bool nearer = !best || (p - position).norm() < (*best - position).norm();
     if (nearer && contains(p)) best = p;

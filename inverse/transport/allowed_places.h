@@ -49,6 +49,7 @@ class AllowedPlaces {
 
   // The nearest place of one light, as far as it is found: an allowed one in any case.
   std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& position) const;
+  // As it is given out, in floats.
   bool contains(const Eigen::Vector3d& position) const;
   // No two lights too close to each other, nor to those that stay.
   bool far_apart(const std::vector<Eigen::Vector3d>& positions) const;

@@ -284,17 +284,6 @@ TEST(ProposePairs, TakeTwoLightsFarApartForTheOneThatTheyPassedFor) {
 
 class CountedLights : public ::testing::TestWithParam<std::size_t> {};
 
-LightEstimates random_lights_of_the_corner(std::size_t count, std::uint32_t seed) {
-  LightEstimates lights;
-  for (std::uint32_t j = 0; j < count; ++j) {
-    renderer::Sampler sampler(seed, 0, j);
-    const Vec3f at = random_position({{0.4F, 0.4F, 0.4F}, {3.6F, 2.6F, 3.6F}}, sampler);
-    const renderer::Vec2f color = sampler.next_2d();
-    lights.push_back({to_eigen(at), {2 + 8 * double(color.x), 2 + 8 * double(color.y), 5}});
-  }
-  return lights;
-}
-
 TEST_P(CountedLights, AreCountedAndFound) {
   const LightEstimates known = known_lights(GetParam());
   const DirectProblem problem(known);
@@ -332,6 +321,17 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   options = {};
   options.time_limit = 1e-9;
   EXPECT_TRUE(choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
+}
+
+LightEstimates random_lights_of_the_corner(std::size_t count, std::uint32_t seed) {
+  LightEstimates lights;
+  for (std::uint32_t j = 0; j < count; ++j) {
+    renderer::Sampler sampler(seed, 0, j);
+    const Vec3f at = random_position({{0.4F, 0.4F, 0.4F}, {3.6F, 2.6F, 3.6F}}, sampler);
+    const renderer::Vec2f color = sampler.next_2d();
+    lights.push_back({to_eigen(at), {2 + 8 * double(color.x), 2 + 8 * double(color.y), 5}});
+  }
+  return lights;
 }
 
 // Elimination leaves them of all: a search that never sees more lights than it may give ends far from these.

@@ -1,5 +1,7 @@
 #include "inverse/solve/observe_target.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/inverse/solve/painted_corner.h"
