@@ -31,11 +31,17 @@ Column residual_of(const Observations& observations, const std::vector<ColumnWit
   return residual;
 }
 
-// Of receivers whose residuals are beyond so many medians little is left.
+// Of receivers whose residuals are beyond so many medians little is left. Dark ones, of which a scene may have any
+// number, and which no light explains better or worse, have no part in the median.
 Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Column& residual, double outlier) {
   const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
-  const Eigen::ArrayXd relative = residual.rowwise().norm().array() / brightness.max(kDark * brightness.mean());
-  const double scale = std::max(kLeastScale, outlier * numerics::median({relative.begin(), relative.end()}));
+  const double dark = kDark * brightness.mean();
+  const Eigen::ArrayXd relative = residual.rowwise().norm().array() / brightness.max(dark);
+  std::vector<double> lit;
+  for (Eigen::Index i = 0; i < relative.size(); ++i) {
+    if (brightness[i] > dark) lit.push_back(relative[i]);
+  }
+  const double scale = std::max(kLeastScale, outlier * numerics::median(std::move(lit)));
   return observations.sqrt_weight.array() / (1 + (relative / scale).square());
 }
 

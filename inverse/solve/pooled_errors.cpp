@@ -27,8 +27,13 @@ std::vector<float> pooled_standard_errors(const Target& target, const std::vecto
     std::array<std::uint32_t, kNeighbours> near{};
     const std::size_t count = tree.find_nearest(target.receivers.samples[chosen[k]], near);
     double sum = 0;
-    for (std::size_t n = 0; n < count; ++n) sum += std::pow(double(target.standard_error[near[n]]), 2);
-    pooled[k] = float(std::sqrt(sum / double(count)));
+    std::size_t others = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+      if (near[n] == chosen[k]) continue;
+      sum += std::pow(double(target.standard_error[near[n]]), 2);
+      ++others;
+    }
+    pooled[k] = others > 0 ? float(std::sqrt(sum / double(others))) : target.standard_error[chosen[k]];
   });
   return pooled;
 }

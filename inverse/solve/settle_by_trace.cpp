@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/cross_shadow_edges.h"
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/further_light.h"
@@ -109,7 +110,9 @@ Observations wanted_of(const Settling& with, const FreeLights& free, const Fresh
   Observations observations =
       observe_target(with.target, with.draw, numerics::chosen_from(traced.all.value, with.draw.chosen));
   for (const Column& brought : free.brought) observations.wanted += brought;
-  return with.held > 0 ? with_capped_weights(observations) : observations;
+  if (with.held > 0) return with_capped_weights(observations);
+  if (with.target.standard_error.empty()) return observations;
+  return weighted_by_noise(with_noise(std::move(observations), with.target, with.draw.chosen), 0);
 }
 
 // Light by bounces at all receivers, at 1 cd.
@@ -207,7 +210,7 @@ class Settler {
       FreeLights free = free_lights(with_, lights, by_trace.traced);
       const SettlingBench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced)};
       if (any_hidden(bench, free)) return by_trace;
-      bench.descend(free.indirect, free.now);
+      descend(bench, free);
       const bool rests = at_rest(bench, free, kCarried * with_.near);
       const auto carried_along = [&](FreeLights& lights_now) { carry_along_with(bench, first, lights, lights_now); };
       if (rests && !at_rest(bench, free, kVeryNear * with_.near)) carried_along(free);
@@ -260,13 +263,26 @@ class Settler {
     }
   }
 
+  // And across the shadows' edges that descents do not see.
+  void descend(const SettlingBench& bench, FreeLights& free) const {
+    bench.descend(free.indirect, free.now);
+    LightEstimates across = free.now;
+    if (!cross_shadow_edges(problem_.tracer, bench, free.indirect, across)) return;
+    LightEstimates descended = across;
+    bench.descend(free.indirect, descended);
+    const auto error = [&](const LightEstimates& lights) {
+      return relative_error(bench.observations, bench.illumination(free.indirect, lights));
+    };
+    free.now = error(descended) < error(across) ? std::move(descended) : std::move(across);
+  }
+
   // lights: as the first part was traced with.
   void carry_along_with(const SettlingBench& bench, const FreshTrace& first, const LightEstimates& lights,
                         FreeLights& free) {
     if (out_of_time()) return;
     finish("settling", free.now.size(), false);
     carry_along(with_, first, trace_first_part_of(joined(with_, lights, free)), free);
-    bench.descend(free.indirect, free.now);
+    descend(bench, free);
   }
 
   // True: one was missing, and there is one more, on its way.

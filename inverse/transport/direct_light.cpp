@@ -38,4 +38,9 @@ bool sees(const renderer::RayTracer& tracer, const SurfaceSample& at, Vec3f ligh
   return !tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed);
 }
 
+float visible_part(const renderer::RayTracer& tracer, const SurfaceSample& at, Vec3f light) {
+  if (dot(light - at.position, at.normal) <= 0) return 0;
+  return tracer.transmittance_between(renderer::offset_point(at.position, at.normal), light);
+}
+
 }  // namespace chiaro::inverse

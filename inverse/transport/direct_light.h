@@ -31,5 +31,7 @@ DirectTerm unoccluded_term(const renderer::SurfaceSample& at, const UnityLight& 
 // Whether the light is above the horizon and nothing stands between. seed: as occluded_between.
 bool sees(const renderer::RayTracer& tracer, const renderer::SurfaceSample& at, renderer::Vec3f light,
           std::uint32_t seed);
+// With what probability it is: the part of the light's direct illumination that arrives.
+float visible_part(const renderer::RayTracer& tracer, const renderer::SurfaceSample& at, renderer::Vec3f light);
 
 }  // namespace chiaro::inverse

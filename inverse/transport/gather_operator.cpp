@@ -115,14 +115,9 @@ SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSampl
   return SparseTransport::from_rows(std::move(rows));
 }
 
-std::uint32_t gather_point_seed(std::size_t point, std::size_t light) {
-  return std::uint32_t(point * 0x9e3779b9U + light);
-}
-
-float direct_at(const RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
+float direct_at(const RayTracer& tracer, const SurfaceSample& at, Vec3f light) {
   const float value = unoccluded_illumination(at, light);
-  if (value <= 0) return 0;
-  return tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed) ? 0 : value;
+  return value > 0 ? value * visible_part(tracer, at, light) : 0;
 }
 
 // That over which light from there is averaged: a gather point, or all of its cell where the light is close.
@@ -133,11 +128,10 @@ std::span<const SurfaceSample> samples_towards(const GatherOperator& gather, std
   return {gather.cell_samples.data() + gather.cell_start[i], gather.cell_start[i + 1] - gather.cell_start[i]};
 }
 
-float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i, Vec3f light,
-                             std::uint32_t seed) {
+float direct_at_gather_point(const RayTracer& tracer, const GatherOperator& gather, std::size_t i, Vec3f light) {
   const auto samples = samples_towards(gather, i, light);
   float sum = 0;
-  for (const SurfaceSample& at : samples) sum += direct_at(tracer, at, light, seed);
+  for (const SurfaceSample& at : samples) sum += direct_at(tracer, at, light);
   return sum / float(samples.size());
 }
 
@@ -148,9 +142,9 @@ DirectTerm direct_term_at_gather_point(const RayTracer& tracer, const GatherOper
   DirectTerm sum;
   for (const SurfaceSample& at : samples) {
     const DirectTerm term = unoccluded_term(at, light);
-    if (term.value <= 0 || !sees(tracer, at, position, gather_point_seed(i, 0))) continue;
-    sum.value += term.value;
-    sum.gradient += term.gradient;
+    const double visible = term.value > 0 ? double(visible_part(tracer, at, position)) : 0;
+    sum.value += visible * term.value;
+    sum.gradient += visible * term.gradient;
   }
   return {sum.value / double(samples.size()), sum.gradient / double(samples.size())};
 }
@@ -185,7 +179,7 @@ std::vector<Lanes> direct_at_gather_points(const RayTracer& tracer, const Gather
   for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t l = 0; l < lights.size(); ++l) {
       for (std::size_t i = first; i < last; ++i) {
-        const float value = direct_at_gather_point(tracer, gather, i, lights[l], gather_point_seed(i, l));
+        const float value = direct_at_gather_point(tracer, gather, i, lights[l]);
         for (auto& channel : direct[i].channel) channel[l] = value;
       }
     }
@@ -321,7 +315,7 @@ std::vector<Vec3f> indirect_illumination_at(const RayTracer& tracer, const Gathe
   std::vector<float> direct(gather.points.size());
   for_each_chunk(direct.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      direct[i] = direct_at_gather_point(tracer, gather, i, light, gather_point_seed(i, 0));
+      direct[i] = direct_at_gather_point(tracer, gather, i, light);
     }
   });
   LightBlock sum;

@@ -80,7 +80,7 @@ std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluati
     constexpr std::size_t kBlock = 1024;
     renderer::parallel_for((receivers_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
       for (std::size_t i = block * kBlock; i < std::min(receivers_.size(), (block + 1) * kBlock); ++i) {
-        visible[i] = sees(tracer_, receivers_[i], light, std::uint32_t(i)) ? 1 : 0;
+        visible[i] = double(visible_part(tracer_, receivers_[i], light));
       }
     });
     return visible;

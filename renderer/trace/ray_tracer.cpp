@@ -1,5 +1,7 @@
 #include "renderer/trace/ray_tracer.h"
 
+#include <algorithm>
+
 #include <embree3/rtcore.h>
 
 #include "renderer/core/error.h"
@@ -9,12 +11,34 @@
 namespace chiaro::renderer {
 namespace {
 
+// What all surfaces on a ray's way let through on average. Embree may show the same triangle more than once, as it may
+// lie in several leaves.
+class MeanPassage {
+ public:
+  struct Surface {
+    unsigned geometry, instance, triangle;
+    bool operator==(const Surface&) const = default;
+  };
+
+  void cross(Surface surface, float through) {
+    if (through >= 1 || std::find(crossed_.begin(), crossed_.end(), surface) != crossed_.end()) return;
+    crossed_.push_back(surface);
+    part_ *= through;
+  }
+  float part() const { return part_; }
+
+ private:
+  std::vector<Surface> crossed_;
+  float part_ = 1;
+};
+
 struct RayContext {
   RTCIntersectContext embree;  // first: Embree hands this address to the filter
   std::uint32_t alpha_seed;
   ClearSurfaces clear;
   bool of_camera;
   bool passed_clear = false;
+  MeanPassage* mean = nullptr;  // if any, nothing is left to chance
 };
 
 struct GeometryUser {
@@ -65,31 +89,54 @@ float cosine_of(const Candidate& c) {
   return dot(normal, direction) / std::sqrt(length_squared(normal) * length_squared(direction));
 }
 
-// Alpha mask and blend: a hit that the alpha does not hold is passed through.
-bool alpha_holds(const Candidate& c) {
-  if (c.material.alpha_mode == AlphaMode::kOpaque) return true;
+// Alpha mask and blend: a hit that the alpha does not hold is passed through. The part of all rays that it holds.
+float held_by_alpha(const Candidate& c) {
+  if (c.material.alpha_mode == AlphaMode::kOpaque) return 1;
   const float alpha = surface_alpha(c.scene, c.mesh, c.triangle, c.u, c.v);
-  if (c.material.alpha_mode == AlphaMode::kBlend) return unit_float(seed_of(c)) < alpha;
-  return alpha >= c.material.alpha_cutoff;
+  if (c.material.alpha_mode == AlphaMode::kBlend) return alpha;
+  return alpha >= c.material.alpha_cutoff ? 1 : 0;
+}
+
+bool alpha_holds(const Candidate& c) {
+  const float held = held_by_alpha(c);
+  return held >= 1 || (held > 0 && unit_float(seed_of(c)) < held);
 }
 
 bool shows_hidden_back(const Candidate& c) {
   return c.material.hidden_back && (c.mirrored ? cosine_of(c) < 0 : cosine_of(c) > 0);
 }
 
+// Luminance that a clear surface lets through; 0 of others.
+float let_through(const Candidate& c) {
+  if (!c.material.layers || !surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v)) return 0;
+  return clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, std::abs(cosine_of(c)));
+}
+
 bool passes_clear(const Candidate& c, ClearSurfaces clear) {
   if (clear == ClearSurfaces::kStop || !c.material.layers) return false;
   if (clear == ClearSurfaces::kPassThin && c.material.layers->solid) return false;
-  if (!surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v)) return false;
-  if (clear != ClearSurfaces::kPassByChance) return true;
-  const float through = clear_luminance(c.scene, c.mesh, c.triangle, {c.u, c.v}, std::abs(cosine_of(c)));
-  return unit_float(hash_combine(seed_of(c), 1)) < through;
+  if (clear == ClearSurfaces::kPassByChance) return unit_float(hash_combine(seed_of(c), 1)) < let_through(c);
+  return surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v);
+}
+
+// Passed, unless next to nothing is left behind it.
+bool passes_on_average(const Candidate& c, MeanPassage& mean) {
+  constexpr float kNothing = 1e-6F;
+  const float through = c.material.unlit ? 1 : 1 - held_by_alpha(c) * (1 - let_through(c));
+  if (!(through > 0)) return false;
+  RTCHitN* hit = c.arguments.hit;
+  mean.cross({RTCHitN_geomID(hit, 1, 0), RTCHitN_instID(hit, 1, 0, 0), c.triangle}, through);
+  return mean.part() > kNothing;
 }
 
 void filter_surface(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->valid[0] != -1) return;
   auto& context = *reinterpret_cast<RayContext*>(arguments->context);
   const Candidate c = candidate(*arguments);
+  if (context.mean != nullptr) {
+    if (passes_on_average(c, *context.mean)) arguments->valid[0] = 0;
+    return;
+  }
   if (!alpha_holds(c) || (context.of_camera ? shows_hidden_back(c) : c.material.unlit)) {
     arguments->valid[0] = 0;
   } else if (passes_clear(c, context.clear)) {
@@ -275,6 +322,16 @@ bool RayTracer::occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed)
   Ray ray = ray_between(from, to, alpha_seed);
   ray.clear = ClearSurfaces::kPassByChance;
   return occluded(ray);
+}
+
+float RayTracer::transmittance_between(Vec3f from, Vec3f to) const {
+  const Ray ray = ray_between(from, to, 0);
+  MeanPassage mean;
+  RayContext context = make_context(ray, true);
+  context.mean = &mean;
+  RTCRay query = make_ray(ray);
+  rtcOccluded1(embree_->root, &context.embree, &query);
+  return query.tfar < 0 ? 0 : mean.part();
 }
 
 float surface_rounding(float largest_coordinate, float radius) {

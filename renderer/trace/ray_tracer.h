@@ -65,6 +65,9 @@ class RayTracer {
   // let it be `to`: rays miss the surface that they start from more surely than one that they come to from afar.
   // Clear surfaces are passed by chance, as alpha-blended ones are.
   bool occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const;
+  // The part of all alpha_seeds with which nothing does: alpha-blended and clear surfaces (by luminance) let through
+  // what they do on average.
+  float transmittance_between(Vec3f from, Vec3f to) const;
 
  private:
   struct Embree;

@@ -56,8 +56,8 @@ ExactIllumination::Illumination ExactIllumination::illumination(const std::vecto
   for (const PointLight& light : lights) positions.push_back(light.position);
   renderer::parallel_for(samples.size(), [&](std::size_t i) {
     for (const PointLight& light : lights) {
-      if (!inverse::sees(stage_.tracer, samples[i], light.position, std::uint32_t(i))) continue;
-      sum.direct[i] += inverse::unoccluded_illumination(samples[i], light.position) * light.intensity;
+      const float visible = inverse::visible_part(stage_.tracer, samples[i], light.position);
+      sum.direct[i] += visible * inverse::unoccluded_illumination(samples[i], light.position) * light.intensity;
     }
   });
   const auto indirect = inverse::indirect_illumination_by_light(stage_.tracer, gather_, positions);

@@ -177,6 +177,55 @@ TEST(RayTracer, BlendedSurfacesStopTheirAlphaOfAllRays) {
   }
 }
 
+// Panes across each other: of coloured glass, and blended ones of which some are drawn twice. Those of one mesh are so
+// long that a hierarchy with spatial splits holds them in many leaves.
+Scene translucent_scene() {
+  Scene scene;
+  Material blended = lambert({1, 1, 1}), glass = lambert({0.9F, 0.8F, 0.3F});
+  blended.alpha_mode = AlphaMode::kBlend;
+  glass.layers.emplace().transmission = 0.7F;
+  glass.roughness = 0;
+  Mesh many;
+  for (std::uint32_t k = 0; k < 324; ++k) {
+    Sampler sampler(12, 0, k);
+    const Vec3f a = uniform_direction(sampler.next_2d()), b = uniform_direction(sampler.next_2d());
+    if (k >= 24) {
+      const auto first = std::uint32_t(many.positions.size());
+      for (const Vec3f p : {-1.5F * a, 1.5F * a, 1.5F * a + 0.1F * b}) {
+        many.positions.push_back(p);
+        many.normals.push_back(b);
+      }
+      many.triangles.push_back({first, first + 1, first + 2});
+      continue;
+    }
+    blended.alpha = 0.1F + 0.5F * sampler.next_1d();
+    add_mesh(scene, rectangle(-1.5F * (a + 0.2F * b), 3 * a, 0.6F * b), k % 3 == 0 ? glass : blended, "pane");
+    if (k % 2 == 0) scene.instances.push_back({"again", int(k), turned({0.1F, 0, 0}, {1, 1, 1})});
+  }
+  blended.alpha = 0.1F;
+  add_mesh(scene, std::move(many), blended, "many");
+  return scene;
+}
+
+TEST(RayTracer, TransmittanceIsWhatRaysPassOnAverage) {
+  const Scene scene = translucent_scene();
+  const RayTracer tracer(scene);
+  constexpr int kSeeds = 4000, kPairs = 60;
+  int partly = 0;
+  for (std::uint32_t k = 0; k < kPairs; ++k) {
+    Sampler sampler(13, 0, k);
+    const Vec3f from = 2 * uniform_direction(sampler.next_2d());
+    const Vec3f to = 0.5F * uniform_direction(sampler.next_2d());
+    int passed = 0;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) passed += tracer.occluded_between(from, to, seed) ? 0 : 1;
+    const double through = double(tracer.transmittance_between(from, to));
+    // Four and a half standard deviations of a binomial: of 60 pairs, p < 0.05 % that any fails by chance.
+    EXPECT_NEAR(double(passed) / kSeeds, through, 4.5 * std::sqrt(through * (1 - through) / kSeeds) + 1e-6);
+    partly += through > 0.01 && through < 0.9 ? 1 : 0;
+  }
+  EXPECT_GT(partly, kPairs / 3);
+}
+
 constexpr float kUlp = 0x1p-23F;  // of a number, at most
 
 // A plane, drawn once or as one of two instances.
