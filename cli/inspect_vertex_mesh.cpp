@@ -30,7 +30,7 @@ struct IlluminationFigures {
     if (renderer::max_component(value) <= 0) ++black;
     for (int c = 0; c < 3; ++c) sums[c] += double(value[c]);
     max = renderer::max(max, value);
-    squares += double(renderer::length_squared(value));
+    squares += renderer::squared_norm(value);
   }
 };
 

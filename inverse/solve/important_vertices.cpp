@@ -74,7 +74,7 @@ std::vector<std::size_t> brightest_receivers(const Target& target, std::size_t c
   double total = 0;
   std::vector<std::pair<double, std::size_t>> energy;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
-    const double e = double(target.weight[i]) * double(length_squared(target.illumination[i]));
+    const double e = double(target.weight[i]) * squared_norm(target.illumination[i]);
     total += e;
     energy.emplace_back(-e, i);
   }

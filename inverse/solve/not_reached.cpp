@@ -41,7 +41,7 @@ std::map<Cell, Sums> sums_by_cell(const Target& target, const std::vector<Vec3f>
   std::map<Cell, Sums> cells;
   for (std::size_t i = 0; i < illumination.size(); ++i) {
     const Vec3f position = target.receivers.positions[i], error = illumination[i] - target.illumination[i];
-    const double squared = double(target.weight[i]) * double(length_squared(error));
+    const double squared = double(target.weight[i]) * squared_norm(error);
     if (!(squared > 0)) continue;
     Cell cell{long(part_of(target.receivers, i)), luminance(error) > 0 ? 1 : 0};
     for (int a = 0; a < 3; ++a) cell[std::size_t(2 + a)] = std::lround(std::floor(double(position[a]) / size));
@@ -109,7 +109,7 @@ std::vector<NotReached> places_not_reached(const Target& target, const std::vect
   const std::map<Cell, Sums> cells = sums_by_cell(target, illumination);
   double wanted = 0;
   for (std::size_t i = 0; i < target.illumination.size(); ++i) {
-    wanted += double(target.weight[i]) * double(length_squared(target.illumination[i]));
+    wanted += double(target.weight[i]) * squared_norm(target.illumination[i]);
   }
   const double total = total_of(cells);
   if (total <= (kSeen * kSeen + noise * noise) * wanted) return {};

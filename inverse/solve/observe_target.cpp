@@ -96,7 +96,7 @@ double target_noise(const Target& target) {
   double error = 0, value = 0;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
     error += 3 * double(target.weight[i]) * double(target.standard_error[i]) * double(target.standard_error[i]);
-    value += double(target.weight[i]) * double(length_squared(target.illumination[i]));
+    value += double(target.weight[i]) * squared_norm(target.illumination[i]);
   }
   return value > 0 ? std::sqrt(error / value) : 0;
 }

@@ -6,6 +6,7 @@
 
 #include "inverse/target/brush_footprint.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -51,6 +52,12 @@ Vec3f apply(const Change& change, Vec3f value) {
   return {std::clamp(changed.x, 0.0F, kMost), std::clamp(changed.y, 0.0F, kMost), std::clamp(changed.z, 0.0F, kMost)};
 }
 
+// Of a standard error, root mean square over the channels.
+float left_of(float error, Vec3f gain) {
+  const double left = double(error) * std::sqrt(squared_norm(gain) / 3);
+  return float(std::min(left, double(renderer::kBrightest)));
+}
+
 void apply_to_receiver(Target& target, const Stroke& stroke, const TouchedReceiver& touched) {
   const float strength = stroke.opacity * touched.facing * falloff(stroke.falloff, touched.distance / stroke.radius);
   const Change change = brush_change(stroke, strength);
@@ -58,7 +65,7 @@ void apply_to_receiver(Target& target, const Stroke& stroke, const TouchedReceiv
   target.illumination[i] = apply(change, target.illumination[i]);
   target.weight[i] = std::lerp(target.weight[i], stroke.weight, touched.facing);
   // Paint is free of noise: of a traced value's error only what the gain leaves stays.
-  if (!target.standard_error.empty()) target.standard_error[i] *= length(change.gain) / std::sqrt(3.0F);
+  if (!target.standard_error.empty()) target.standard_error[i] = left_of(target.standard_error[i], change.gain);
 }
 
 void check_options(const PaintOptions& options) {

@@ -133,7 +133,7 @@ void save_target(const Target& target, const std::filesystem::path& path) {
 
 std::vector<float> standard_error_per_receiver(const renderer::Illumination& illumination) {
   std::vector<float> errors;
-  for (const Vec3f error : illumination.standard_error) errors.push_back(length(error) / std::sqrt(3.0F));
+  for (const Vec3f error : illumination.standard_error) errors.push_back(float(std::sqrt(squared_norm(error) / 3)));
   return errors;
 }
 

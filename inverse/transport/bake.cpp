@@ -140,9 +140,9 @@ double Baker::measure_indirect_error(const renderer::Control& control) {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const auto& c = indirect[i].channel;
       const Vec3f traced = all.value[i] - direct.value[i];
-      difference += length_squared(Vec3f{c[0][k], c[1][k], c[2][k]} - traced);
-      noise += length_squared(all.standard_error[i]);
-      reference += length_squared(traced);
+      difference += squared_norm(Vec3f{c[0][k], c[1][k], c[2][k]} - traced);
+      noise += squared_norm(all.standard_error[i]);
+      reference += squared_norm(traced);
     }
   }
   return reference > 0 ? std::sqrt(std::max(0.0, difference - noise) / reference) : 0;

@@ -49,6 +49,8 @@ inline float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3f cross(Vec3f a, Vec3f b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 inline float length_squared(Vec3f a) { return dot(a, a); }
 inline float length(Vec3f a) { return std::sqrt(dot(a, a)); }
+// The same square for values of light: those of very bright or very dim ones are no floats.
+inline double squared_norm(Vec3f a) { return double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z; }
 inline Vec3f normalize(Vec3f a) { return a / length(a); }
 inline float max_component(Vec3f a) { return std::max({a.x, a.y, a.z}); }
 inline float min_component(Vec3f a) { return std::min({a.x, a.y, a.z}); }

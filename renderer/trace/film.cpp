@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -26,7 +28,11 @@ void add3(double* sums, Vec3f v) {
   for (int c = 0; c < 3; ++c) sums[c] += double(v[c]);
 }
 
-Vec3f mean_of(const float* sums, int samples) { return Vec3f{sums[0], sums[1], sums[2]} / float(samples); }
+// Of what is more than any float, the largest: no layer holds what is not a number.
+float held(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return float(std::clamp(value, -kMost, kMost));
+}
 
 }  // namespace
 
@@ -130,7 +136,7 @@ std::size_t Film::index(std::size_t tile, int pixel) const {
 
 void Film::merge(std::size_t tile, const TileSums& sums, std::array<int, 2> batch_samples) {
   const auto add_all = [](float* to, const double* from, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) to[i] += float(from[i]);
+    for (std::size_t i = 0; i < count; ++i) to[i] = held(double(to[i]) + from[i]);
   };
   for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
     const std::size_t at = index(tile, pixel), p = std::size_t(pixel);
@@ -172,9 +178,11 @@ HalfStatistics Film::statistics(std::size_t tile, int half) const {
   if (n0 == 0 || n1 == 0) return s;
   for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
     const float* sums = &batches_[index(tile, pixel) * kBatches * 3];
-    const Vec3f a = mean_of(sums + 3 * half, n0), b = mean_of(sums + 3 * (half + 2), n1);
-    s.value += double(dot(float(n0) * a + float(n1) * b, {1, 1, 1})) / (3 * (n0 + n1));
-    s.variance += double(length_squared(a - b)) / 3 * n0 * n1 / (n0 + n1);
+    for (int c = 0; c < 3; ++c) {
+      const double a = sums[3 * half + c], b = sums[3 * (half + 2) + c];
+      s.value += (a + b) / (3 * (n0 + n1));
+      s.variance += std::pow(a / n0 - b / n1, 2) / 3 * n0 * n1 / (n0 + n1);
+    }
   }
   s.value /= tiles_[tile].pixels();
   s.variance /= tiles_[tile].pixels();
@@ -187,30 +195,29 @@ Film::PixelEstimate Film::estimate(std::size_t tile, int pixel) const {
   const std::array<double, 2> weights = half_weights(tile);
   std::array<int, kBatches> n{};
   int all = 0, batches = 0;
-  Vec3f total;
   for (int b = 0; b < kBatches; ++b) {
     n[b] = batch_samples(b, asked_[tile][b & 1]);
     if (n[b] == 0) continue;
     ++batches;
     all += n[b];
-    total += Vec3f{sums[3 * b], sums[3 * b + 1], sums[3 * b + 2]};
   }
   PixelEstimate e;
   for (int half = 0; half < 2; ++half) {
-    for (int c = 0; c < 3; ++c)
-      e.value[c] += float(weights[half] * double(sums[3 * half + c] + sums[3 * half + 6 + c]));
+    for (std::size_t c = 0; c < 3; ++c) {
+      e.value[c] += weights[half] * (double(sums[3 * half + c]) + double(sums[3 * half + 6 + c]));
+    }
   }
   if (batches < 2) return e;
-  Vec3f spread;
-  const Vec3f mean = total / float(all);
-  for (int b = 0; b < kBatches; ++b) {
-    if (n[b] == 0) continue;
-    const Vec3f d = mean_of(sums + 3 * b, n[b]) - mean;
-    spread += float(n[b]) * d * d;
-  }
   double share = 0;  // Σ (weight of a sample)², of the two halves
   for (int half = 0; half < 2; ++half) share += weights[half] * weights[half] * half_samples(tile, half);
-  e.variance = (float(share) / float(batches - 1)) * spread;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double total = 0, spread = 0;
+    for (int b = 0; b < kBatches; ++b) total += double(sums[3 * b + c]);
+    for (int b = 0; b < kBatches; ++b) {
+      if (n[b] > 0) spread += n[b] * std::pow(double(sums[3 * b + c]) / n[b] - total / all, 2);
+    }
+    e.variance[c] = share / (batches - 1) * spread;
+  }
   return e;
 }
 
@@ -219,8 +226,10 @@ double Film::relative_standard_error() const {
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
     for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
       const PixelEstimate e = estimate(tile, pixel);
-      error += double(dot(e.variance, {1, 1, 1}));
-      value += double(length_squared(e.value));
+      for (std::size_t c = 0; c < 3; ++c) {
+        error += e.variance[c];
+        value += e.value[c] * e.value[c];
+      }
     }
   }
   return value > 0 ? std::sqrt(error / value) : 0;
@@ -230,7 +239,7 @@ void Film::finish_pixel(std::size_t tile, int pixel, float* out) const {
   const std::size_t at = index(tile, pixel);
   const std::array<double, 2> weights = half_weights(tile);
   const float *a = &layers_[at * 2 * stride_], *b = a + stride_;
-  for (std::size_t c = 0; c < stride_; ++c) out[c] = float(weights[0] * double(a[c]) + weights[1] * double(b[c]));
+  for (std::size_t c = 0; c < stride_; ++c) out[c] = held(weights[0] * double(a[c]) + weights[1] * double(b[c]));
   const float hits = out[3];
   for (const int first : {normal_, position_}) {
     for (int c = 0; first >= 0 && c < 3; ++c) out[first + c] = hits > 0 ? out[first + c] / hits : 0.0F;
@@ -239,8 +248,8 @@ void Film::finish_pixel(std::size_t tile, int pixel, float* out) const {
   if (samples_layer_ >= 0) out[samples_layer_] = float(tile_samples(tile));
   for (std::size_t k = 0; k < 2 && mattes_wanted_; ++k) write_mattes(mattes_[k][at], weights, out + matte_layers_[k]);
   if (variance_ < 0) return;
-  const Vec3f variance = estimate(tile, pixel).variance;
-  for (int c = 0; c < 3; ++c) out[variance_ + c] = variance[c];
+  const std::array<double, 3> variance = estimate(tile, pixel).variance;
+  for (std::size_t c = 0; c < 3; ++c) out[std::size_t(variance_) + c] = held(variance[c]);
 }
 
 Image Film::finish() const {

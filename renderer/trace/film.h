@@ -81,7 +81,7 @@ class Film {
 
  private:
   struct PixelEstimate {
-    Vec3f value, variance;  // of the mean
+    std::array<double, 3> value{}, variance{};  // of the mean: (cd/m²)² may be more than a float holds
   };
   std::size_t index(std::size_t tile, int pixel) const;
   int half_samples(std::size_t tile, int half) const;

@@ -148,8 +148,8 @@ int samples_for_noise(int samples, double noise, double may_be, int most) {
 double relative_standard_error(const Illumination& illumination) {
   double error = 0, value = 0;
   for (std::size_t i = 0; i < illumination.value.size(); ++i) {
-    error += length_squared(illumination.standard_error[i]);
-    value += length_squared(illumination.value[i]);
+    error += squared_norm(illumination.standard_error[i]);
+    value += squared_norm(illumination.value[i]);
   }
   return value > 0 ? std::sqrt(error / value) : 0;
 }

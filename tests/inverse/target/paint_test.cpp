@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 #include "tests/inverse/target/surfaces.h"
 
 namespace chiaro::inverse {
@@ -154,6 +155,17 @@ TEST(Paint, StandardErrorShrinksWithWhatIsLeftOfTheTracedValue) {
   const Stroke add = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
   const Target added = paint(base, {StrokeBase::kCurrent, {add}}, {}).target;
   EXPECT_NEAR(added.standard_error[floor_receiver(4, 4)], 0.5F, 1e-6F);
+}
+
+TEST(Paint, StandardErrorsStayNumbersWhateverTheGain) {
+  Target base = make_target(make_floor(), kBase);
+  base.standard_error.assign(81, 0.5F);
+  Stroke brighten = middle_dab(BrushMode::kMultiply, BrushFalloff::kHard);
+  brighten.color = {1e20F, 1e20F, 1e20F};
+  const Target once = paint(base, {StrokeBase::kCurrent, {brighten}}, {}).target;
+  EXPECT_FLOAT_EQ(once.standard_error[floor_receiver(4, 4)], 0.5e20F);
+  const Target twice = paint(base, {StrokeBase::kCurrent, {brighten, brighten}}, {}).target;
+  EXPECT_EQ(twice.standard_error[floor_receiver(4, 4)], renderer::kBrightest);
 }
 
 std::size_t count_painted(const Target& target, std::size_t first, std::size_t end) {

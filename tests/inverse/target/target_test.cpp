@@ -147,5 +147,13 @@ TEST(StandardErrorPerReceiver, IsTheRootMeanSquareOfTheChannels) {
   EXPECT_EQ(found[2], 0);
 }
 
+TEST(StandardErrorPerReceiver, IsANumberHoweverBrightOrDim) {
+  for (const float error : {1e-24F, 1e24F}) {
+    renderer::Illumination illumination;
+    illumination.standard_error = {{error, error, error}};
+    EXPECT_FLOAT_EQ(standard_error_per_receiver(illumination)[0], error);
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::inverse

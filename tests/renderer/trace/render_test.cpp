@@ -2,7 +2,9 @@
 
 #include "renderer/trace/render.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -321,6 +323,27 @@ TEST(Render, SamplesThatAreNotFiniteAreDroppedAndCounted) {
   const Frame frame = render(tracer, camera_above(2), lights, options);
   EXPECT_GT(frame.dropped_samples, 0U);
   for (const float value : frame.image.pixels) EXPECT_FALSE(std::isnan(value));
+}
+
+TEST(Render, NoiseIsToldAndLayersAreNumbersHoweverBrightOrDim) {
+  // The same frame in other units. Variances are held at the largest float.
+  Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const auto lit_by = [&](float candela) {
+    RenderOptions options = sized(16, 12, {.samples = 16, .bounces = 2, .seed = 4});
+    options.layers = {"variance"};
+    return render(tracer, default_camera(scene), {PointLight{"", {3, 2, 3}, {candela, candela, candela}}}, options);
+  };
+  const double expected = lit_by(1).relative_standard_error;
+  ASSERT_GT(expected, 0.01);
+  for (const float candela : {1e-24F, 1e20F, 1e24F}) {
+    const Frame frame = lit_by(candela);
+    EXPECT_NEAR(frame.relative_standard_error, expected, 1e-3 * expected) << candela;
+    EXPECT_EQ(frame.dropped_samples, 0U) << candela;
+    EXPECT_TRUE(std::all_of(frame.image.pixels.begin(), frame.image.pixels.end(), [](float value) {
+      return std::isfinite(value);
+    })) << candela;
+  }
 }
 
 TEST(Render, ClampingHoldsEachContributionDown) {

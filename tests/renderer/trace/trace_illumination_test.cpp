@@ -68,6 +68,19 @@ TEST(TraceIllumination, ByLightIsTheSameTakenApart) {
   }
 }
 
+TEST(TraceIllumination, NoiseIsToldHoweverBrightOrDim) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const std::vector<SurfaceSample> points{{{2, 0.001F, 2}, {0, 1, 0}}, {{0.001F, 1, 3}, {1, 0, 0}}};
+  const auto noise_of = [&](float candela) {
+    const Lights lights{PointLight{"", {3, 2, 3}, {candela, candela, candela}}};
+    return relative_standard_error(trace_illumination(tracer, points, lights, {.samples = 8, .bounces = 2}));
+  };
+  const double expected = noise_of(1);
+  ASSERT_GT(expected, 0.001);
+  for (const float candela : {1e-24F, 1e20F, 1e24F}) EXPECT_NEAR(noise_of(candela), expected, 1e-3 * expected);
+}
+
 TEST(TraceIllumination, FurnaceGivesEmissionOverOneMinusAlbedo) {
   // Inside a closed surface of emission e and albedo a, radiance and illumination are e / (1 - a) everywhere.
   for (const float albedo : {0.0F, 0.5F, 0.8F}) {
