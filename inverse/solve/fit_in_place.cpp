@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/check_brightness.h"
 #include "inverse/solve/check_lights_in_place.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/stage_clock.h"
@@ -147,6 +148,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
                            "no light possible: none of the scene's lights brightens the painted surfaces",
                            "a target that they can produce, or lights that may move"});
   }
+  for (const Eigen::Array3d& intensity : fit.intensity) check_brightness(problem, intensity.maxCoeff());
   std::vector<Eigen::Array3d> before;
   for (const renderer::Light& light : problem.lights_in_place) before.push_back(to_eigen(intensity_of(light)).array());
   result.initial_relative_l2 = error_of(observations, columns, before);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/check_brightness.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
@@ -104,6 +105,12 @@ void require_all_lights(const SolveProblem& problem, const SolveOptions& options
   if (std::all_of(found.begin(), found.end(), is_dark)) nothing_lit(problem);
 }
 
+double brightest_of(const LightEstimates& lights) {
+  double brightest = 0;
+  for (const LightEstimate& light : lights) brightest = std::max(brightest, light.intensity.maxCoeff());
+  return brightest;
+}
+
 // In place of the set of as many that the search knew, if any.
 void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<LightSet>& curve) {
   LightSet set{{}, relative_l2};
@@ -189,7 +196,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   optimum.lights = filled_up(searched->response, searched->judged, std::move(optimum.lights),
                              std::size_t(std::max(1, options.exact_lights)));
   require_all_lights(problem, options, optimum.lights);
+  check_brightness(problem, brightest_of(optimum.lights));
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
+  check_brightness(problem, brightest_of(by_trace.lights));
   result.optimal_seconds += by_trace.settling_seconds;
   report_lights(searched->response, searched->reported, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "inverse/target/brush_footprint.h"
 #include "renderer/core/error.h"
@@ -48,7 +47,7 @@ Change brush_change(const Stroke& stroke, float strength) {
 
 Vec3f apply(const Change& change, Vec3f value) {
   const Vec3f changed = change.gain * value + change.offset;
-  constexpr float kMost = std::numeric_limits<float>::max();
+  constexpr float kMost = renderer::kBrightest;
   return {std::clamp(changed.x, 0.0F, kMost), std::clamp(changed.y, 0.0F, kMost), std::clamp(changed.z, 0.0F, kMost)};
 }
 

@@ -55,7 +55,7 @@ struct PaintResult {
 };
 
 // Applies the strokes in order to `base` (its illumination is what the strokes change; its weights become
-// unpainted_weight where no stroke touches).
+// unpainted_weight where no stroke touches). Values are held between 0 and renderer::kBrightest.
 PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options);
 
 }  // namespace chiaro::inverse

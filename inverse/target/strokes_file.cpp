@@ -2,8 +2,11 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "inverse/target/json_field.h"
 #include "inverse/target/paint.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -60,6 +63,11 @@ MirrorPlane read_mirror(const JsonField& field) {
   return plane;
 }
 
+Vec3f read_color(const JsonField& field) {
+  static const std::string expected = fmt::format("three numbers from 0 to {:g}, cd/m²", renderer::kBrightest);
+  return read_triple(field, {0, renderer::kBrightest}, expected.c_str());
+}
+
 Stroke read_stroke(const JsonField& field) {
   static constexpr std::string_view kKnown[] = {"mode", "color",    "radius", "falloff", "opacity",
                                                 "path", "distance", "mirror", "facing",  "weight"};
@@ -69,7 +77,7 @@ Stroke read_stroke(const JsonField& field) {
   Stroke stroke;
   if (has("mode")) stroke.mode = read_choice(field.member("mode"), kModes);
   if (!has("color") && stroke.mode != BrushMode::kErase) field.fail("has no \"color\"", "a \"color\"");
-  if (has("color")) stroke.color = read_triple(field.member("color"), kNotNegative, "three numbers ≥ 0, cd/m²");
+  if (has("color")) stroke.color = read_color(field.member("color"));
   if (has("radius")) stroke.radius = read_number(field.member("radius"), kPositive, "a number > 0, metres");
   if (has("falloff")) stroke.falloff = read_choice(field.member("falloff"), kFalloffs);
   if (has("opacity")) stroke.opacity = read_number(field.member("opacity"), {0, 1}, "a number from 0 to 1");

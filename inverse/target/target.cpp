@@ -20,8 +20,15 @@ using renderer::VertexMeshPart;
 bool has_values(const VertexMeshPart& part) { return !part.illumination.empty() || !part.color.empty(); }
 
 [[noreturn]] void fail_at_vertex(const std::string& file, const VertexMeshPart& part, std::size_t vertex,
-                                 const char* problem) {
-  throw Error({file, fmt::format("node \"{}\", vertex {}", part.name, vertex), problem, "finite numbers ≥ 0"});
+                                 const char* problem, const std::string& expected) {
+  throw Error({file, fmt::format("node \"{}\", vertex {}", part.name, vertex), problem, expected});
+}
+
+// Of what is read and of what is written: no file of ours is refused later.
+void check_illumination(const std::string& file, const VertexMeshPart& part, std::size_t vertex, Vec3f value) {
+  if (is_finite(value) && min_component(value) >= 0 && max_component(value) <= renderer::kBrightest) return;
+  fail_at_vertex(file, part, vertex, "illumination is negative or too large",
+                 fmt::format("0 to {:g} cd/m²", renderer::kBrightest));
 }
 
 Vec3f wanted_value(const VertexMeshPart& part, std::size_t vertex, float target_scale) {
@@ -38,8 +45,7 @@ float wanted_weight(const VertexMeshPart& part, std::size_t vertex) {
 void append_part(Target& target, const VertexMeshPart& part, float target_scale, const std::string& file) {
   for (std::size_t i = 0; i < part.positions.size(); ++i) {
     const Vec3f value = wanted_value(part, i, target_scale);
-    if (!is_finite(value) || min_component(value) < 0 || max_component(value) > renderer::kBrightest)
-      fail_at_vertex(file, part, i, "illumination is negative or too large");
+    check_illumination(file, part, i, value);
     target.illumination.push_back(value);
     target.weight.push_back(wanted_weight(part, i));
   }
@@ -54,7 +60,7 @@ bool all_know_their_error(const VertexMesh& mesh) {
 void append_standard_error(Target& target, const VertexMeshPart& part, const std::string& file) {
   for (std::size_t i = 0; i < part.positions.size(); ++i) {
     const float error = part.standard_error.empty() ? 0 : part.standard_error[i];
-    if (!(error >= 0)) fail_at_vertex(file, part, i, "_STANDARD_ERROR is negative");
+    if (!(error >= 0)) fail_at_vertex(file, part, i, "_STANDARD_ERROR is negative", "finite numbers ≥ 0");
     target.standard_error.push_back(error);
   }
 }
@@ -123,6 +129,7 @@ void save_target(const Target& target, const std::filesystem::path& path) {
   for (VertexMeshPart& part : mesh.parts) {
     const std::size_t count = part.positions.size();
     part.illumination = slice(target.illumination, first, count);
+    for (std::size_t i = 0; i < count; ++i) check_illumination(path.string(), part, i, part.illumination[i]);
     part.weight = slice(target.weight, first, count);
     part.standard_error = slice(target.standard_error, first, count);
     first += count;

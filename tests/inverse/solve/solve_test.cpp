@@ -6,6 +6,7 @@
 
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 #include "tests/inverse/solve/painted_corner.h"
 #include "tests/support/save_transport_cache.h"
 #include "tests/support/temporary_folder.h"
@@ -98,6 +99,18 @@ TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
   one = quick();
   one.exact_lights = 1;
   EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
+}
+
+TEST(Solve, LightsBrighterThanFilesSayAreRefused) {
+  const PaintedCorner corner;
+  Target target = corner.target(known_lights(1), 0);
+  float brightest = 0;
+  for (const Vec3f value : target.illumination) brightest = std::max(brightest, max_component(value));
+  for (Vec3f& value : target.illumination) value = (0.9F * renderer::kBrightest / brightest) * value;
+  SolveProblem problem = problem_of(corner, target, 0);
+  expect_said(error_of(problem, quick()), "no light possible: it takes a light of");
+  problem.lights_in_place = point_lights(known_lights(1));
+  expect_said(error_of(problem, quick()), "no light possible: it takes a light of");
 }
 
 TEST(Solve, KeepsToARegionFarFromTheBrightestReceivers) {

@@ -89,9 +89,8 @@ TEST(Paint, ValuesNeitherFallBelowZeroNorOverflow) {
   darken.color = {-100, -1, 0};
   EXPECT_EQ(paint_floor(darken).target.illumination[floor_receiver(4, 4)], (Vec3f{0, 3, 2}));
   Stroke brighten = middle_dab(BrushMode::kMultiply, BrushFalloff::kHard);
-  constexpr float kMost = std::numeric_limits<float>::max();
-  brighten.color = {kMost, 1, 1};
-  EXPECT_EQ(paint_floor(brighten).target.illumination[floor_receiver(4, 4)], (Vec3f{kMost, 4, 2}));
+  brighten.color = {renderer::kBrightest, 1, 1};
+  EXPECT_EQ(paint_floor(brighten).target.illumination[floor_receiver(4, 4)], (Vec3f{renderer::kBrightest, 4, 2}));
 }
 
 TEST(Paint, StrokesApplyInOrder) {

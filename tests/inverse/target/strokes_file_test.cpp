@@ -139,6 +139,7 @@ TEST(StrokesFile, FieldsOfAStrokeThatAreWrongAreNamed) {
       {only_stroke(R"("path":[[0,0,0]])"), "strokes[0]", "no \"color\""},
       {only_stroke(R"("color":[1,1,1])"), "strokes[0]", "no \"path\""},
       {only_stroke(R"("color":[1,-1,1],"path":[[0,0,0]])"), "strokes[0].color[1]", "is -1"},
+      {only_stroke(R"("color":[1,1,1e25],"path":[[0,0,0]])"), "strokes[0].color[2]", "is 1e+25"},
       {only_stroke(R"("color":[1,1],"path":[[0,0,0]])"), "strokes[0].color", "array with 2"},
       {only_stroke(R"("color":1,"path":[[0,0,0]])"), "strokes[0].color", "is 1"},
       {only_stroke(R"("color":[1,1,1],"path":[])"), "strokes[0].path", "array with 0"},

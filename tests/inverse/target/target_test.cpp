@@ -130,6 +130,22 @@ TEST(Target, ValuesThatCannotBeAreErrors) {
   expect_error({{"a", {{"_ILLUMINATION", kValues}, {"_STANDARD_ERROR", {1, 1, -1}}}}}, "_STANDARD_ERROR");
 }
 
+TEST(Target, WhatWouldBeRefusedIsNotWritten) {
+  const TemporaryFolder folder;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float value : {1e25F, std::numeric_limits<float>::infinity(), nan}) {
+    Target target = make_rich_target();
+    target.illumination[83].y = value;
+    try {
+      save_target(target, folder.path() / "target.glb");
+      ADD_FAILURE() << value;
+    } catch (const renderer::Error& error) {
+      EXPECT_NE(error.parts().place.find("vertex 2"), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(exists(folder.path() / "target.glb"));
+  }
+}
+
 TEST(Target, AScaleThatIsNoScaleIsAnError) {
   for (const float scale : {0.0F, -1.0F, std::numeric_limits<float>::infinity()}) {
     EXPECT_THROW(load_nodes({{"a", {{"COLOR_0", kValues}}}}, scale), renderer::Error) << scale;
