@@ -63,7 +63,9 @@ void add_chromaticities(renderer::Attributes& attributes, const FrameOptions& op
 void add_attributes(renderer::Attributes& attributes, const renderer::Frame& frame, const FrameOptions& options) {
   attributes.emplace_back("chiaro:samples", frame.samples);
   attributes.emplace_back("chiaro:mean_samples", float(frame.mean_samples));
-  attributes.emplace_back("chiaro:relative_standard_error", float(frame.relative_standard_error));
+  if (frame.relative_standard_error) {
+    attributes.emplace_back("chiaro:relative_standard_error", float(*frame.relative_standard_error));
+  }
   if (options.noise_threshold > 0) attributes.emplace_back("chiaro:noise_threshold", float(options.noise_threshold));
   if (options.clamp_direct) attributes.emplace_back("chiaro:clamp_direct", *options.clamp_direct);
   if (options.clamp_indirect) attributes.emplace_back("chiaro:clamp_indirect", *options.clamp_indirect);

@@ -1,6 +1,8 @@
 #pragma once
 // Illumination under given lights as a target: what `illuminate` writes and `paint` starts from.
 
+#include <optional>
+
 #include "inverse/target/target.h"
 #include "renderer/core/control.h"
 #include "renderer/trace/trace_illumination.h"
@@ -9,7 +11,7 @@ namespace chiaro::cli {
 
 struct TracedTarget {
   inverse::Target target;
-  double relative_standard_error = 0;
+  std::optional<double> relative_standard_error;  // absent: not known
 };
 
 TracedTarget trace_target(const renderer::RayTracer& tracer, inverse::Receivers receivers,

@@ -3,6 +3,8 @@
 
 #include <concepts>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -25,6 +27,7 @@ struct Json {
   template <std::integral T>
   requires(!std::same_as<T, bool>) Json(T v) : value(std::int64_t(v)) {}
   Json(double v) : value(v) {}
+  Json(std::optional<double> v) : value(v.value_or(std::numeric_limits<double>::quiet_NaN())) {}  // absent: null
   Json(float v);  // the double with the fewest digits that rounds to v
   Json(const char* v) : value(std::string(v)) {}
   Json(std::string v) : value(std::move(v)) {}

@@ -55,7 +55,9 @@ std::string text_of_seconds(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-std::string text_of_percent(double fraction) { return fmt::format("{:.3g} %", 100 * fraction); }
+std::string text_of_percent(std::optional<double> fraction) {
+  return fraction ? fmt::format("{:.3g} %", 100 * *fraction) : "not known";
+}
 
 std::string text_of_bytes(double bytes) {
   const char* units[] = {"bytes", "kB", "MB", "GB", "TB"};

@@ -1,6 +1,7 @@
 #pragma once
 // What people read.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,10 +18,10 @@ std::string aligned_rows(const std::vector<TextRow>& rows);
 // Lines of cells; the first row is the heading; columns aligned to the right but the first.
 std::string table(std::vector<std::vector<std::string>> rows);
 
-std::string text_of_vector(renderer::Vec3f v);  // "1.25 0 -3"
-std::string text_of_seconds(double seconds);    // "0.31 s", "4 min 05 s"
-std::string text_of_percent(double fraction);   // "4.12 %"
-std::string text_of_bytes(double bytes);        // "1.2 GB"
+std::string text_of_vector(renderer::Vec3f v);                // "1.25 0 -3"
+std::string text_of_seconds(double seconds);                  // "0.31 s", "4 min 05 s"
+std::string text_of_percent(std::optional<double> fraction);  // "4.12 %", "not known"
+std::string text_of_bytes(double bytes);                      // "1.2 GB"
 
 // The same in one line, as terminals and programs can take it, whatever names of files are in it: line ends and other
 // control characters become spaces, bytes that are no UTF-8 the replacement character.

@@ -161,7 +161,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   judge(problem, options, std::move(traced), result);
   clock.finish("verification", {{"samples", double(fresh_samples)},
                                 {"relative_l2", result.relative_l2},
-                                {"relative_standard_error", result.verification_noise}});
+                                {"relative_standard_error", result.verification_noise.value_or(kNotKnown)}});
   result.stages = clock.stages();
   result.total_seconds = clock.total();
   return result;

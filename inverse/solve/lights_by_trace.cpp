@@ -27,7 +27,8 @@ void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
 }  // namespace
 
 StageFigures verification_figures(const FreshTrace& traced) {
-  return {{"samples", double(traced.samples)}, {"relative_standard_error", relative_standard_error(traced.all)}};
+  return {{"samples", double(traced.samples)},
+          {"relative_standard_error", relative_standard_error(traced.all).value_or(kNotKnown)}};
 }
 
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,

@@ -85,7 +85,7 @@ json result_json(const SolveResult& result) {
           {"relative_l2", result.relative_l2},
           {"relative_l2_cached", result.relative_l2_cached},
           {"initial_relative_l2", result.initial_relative_l2},
-          {"verification_noise", result.verification_noise},
+          {"verification_noise", result.verification_noise ? json(*result.verification_noise) : json()},
           {"target_noise", result.target_noise},
           {"important_vertices", result.important_vertices},
           {"stage_seconds", seconds},

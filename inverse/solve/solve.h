@@ -66,12 +66,12 @@ struct StageReport {
 };
 
 struct SolveResult {
-  std::vector<FoundLight> lights;  // brightest contribution first
-  double relative_l2 = 0;          // traced afresh, all receivers
-  double relative_l2_cached = 0;   // by the cache
-  double initial_relative_l2 = 0;  // by the cache, before the last optimisation
-  double verification_noise = 0;   // relative standard error of the fresh evaluation
-  double target_noise = 0;         // relative L2 that the target's own noise is expected to give; 0: not known
+  std::vector<FoundLight> lights;            // brightest contribution first
+  double relative_l2 = 0;                    // traced afresh, all receivers
+  double relative_l2_cached = 0;             // by the cache
+  double initial_relative_l2 = 0;            // by the cache, before the last optimisation
+  std::optional<double> verification_noise;  // relative standard error of the fresh evaluation; absent: not known
+  double target_noise = 0;                   // relative L2 that the target's own noise should give; 0: not known
   double initial_seconds = 0, optimal_seconds = 0, cache_seconds = 0, total_seconds = 0;
   std::vector<LightSet> error_curve;  // of ever more lights; of the joint method alone
   std::vector<StageReport> stages;

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 
 #include "inverse/solve/solve.h"
 #include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
+
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();  // of a figure
 
 using StageFigures = std::vector<std::pair<std::string, double>>;
 

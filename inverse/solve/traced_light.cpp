@@ -48,7 +48,7 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
 // Relative to the target.
 double noise_that_does_not_matter(const SolveProblem& problem, const FreshTrace& traced) {
   const Target& target = problem.target;
-  const double noise = relative_standard_error(traced.all), of_target = target_noise(target);
+  const double noise = relative_standard_error(traced.all).value_or(0), of_target = target_noise(target);
   const double error = relative_l2(traced.all.value, target.illumination, target.weight);
   const double unexplained = std::sqrt(std::max(0.0, error * error - noise * noise - of_target * of_target));
   return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
@@ -82,7 +82,7 @@ FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights
   const int most = verification_samples(options, problem.target.receivers.size());
   const int needed = options.verification_samples > 0
                          ? most
-                         : renderer::samples_for_noise(first.samples, relative_standard_error(first.all),
+                         : renderer::samples_for_noise(first.samples, relative_standard_error(first.all).value_or(0),
                                                        noise_that_does_not_matter(problem, first), most);
   const int more = needed - first.samples;
   if (more <= 0) return first;
@@ -99,7 +99,7 @@ void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace 
   result.verification_noise = relative_standard_error(traced.all);
   result.illumination = std::move(traced.all.value);
   result.relative_l2 = relative_l2(result.illumination, target.illumination, target.weight);
-  const double noise = std::hypot(result.verification_noise, result.target_noise);
+  const double noise = std::hypot(result.verification_noise.value_or(0), result.target_noise);
   result.not_reached = places_not_reached(target, result.illumination, noise);
   result.advice = advice_for(problem, options, result);
 }

@@ -21,7 +21,7 @@ Target load_target(const std::filesystem::path& path, float target_scale = 1);
 // Error, naming the vertex, for illumination that load_target would refuse.
 void save_target(const Target& target, const std::filesystem::path& path);
 
-// _STANDARD_ERROR of a traced illumination: root mean square over the channels.
+// _STANDARD_ERROR of a traced illumination: root mean square over the channels. Empty where it is not known.
 std::vector<float> standard_error_per_receiver(const renderer::Illumination& illumination);
 
 // ‖a − b‖ / ‖b‖ over receivers and channels, each receiver weighted (eq. 3.6). b is the reference.

@@ -221,7 +221,9 @@ Film::PixelEstimate Film::estimate(std::size_t tile, int pixel) const {
   return e;
 }
 
-double Film::relative_standard_error() const {
+// A single sample of a pixel does not tell how far it is off.
+std::optional<double> Film::relative_standard_error() const {
+  if (samples_ < 2) return std::nullopt;
   double error = 0, value = 0;
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
     for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {

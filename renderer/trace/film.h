@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,7 +74,7 @@ class Film {
   std::array<int, 2> asked(std::size_t tile) const { return asked_[tile]; }
   int tile_samples(std::size_t tile) const;  // of a pixel
   HalfStatistics statistics(std::size_t tile, int half) const;
-  double relative_standard_error() const;  // of the frame, sqrt(Σ se² / Σ value²)
+  std::optional<double> relative_standard_error() const;  // of the frame, sqrt(Σ se² / Σ value²); if it is known
   std::uint64_t dropped() const;
 
   // Means; position, depth and normal are means over the samples that hit something.

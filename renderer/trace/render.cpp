@@ -189,7 +189,8 @@ bool add_passes(const FrameTask& task, const Clock& clock, const Control& contro
       return true;
     }
     if (visibility != nullptr) visibility->learn();
-    if (control.report_noise) control.report_noise(film.relative_standard_error());
+    const std::optional<double> noise = control.report_noise ? film.relative_standard_error() : std::nullopt;
+    if (noise) control.report_noise(*noise);
   }
 }
 

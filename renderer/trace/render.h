@@ -1,6 +1,7 @@
 #pragma once
 // Final frames.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,11 +33,11 @@ struct Frame {
   int samples = 0;          // of the pixel that has the most
   double mean_samples = 0;  // per pixel
   double seconds = 0;
-  double relative_standard_error = 0;  // of the mean of the frame's pixels, sqrt(Σ se² / Σ value²)
-  std::uint64_t dropped_samples = 0;   // that were not finite, and were left black
-  bool interrupted = false;            // asked to stop before it was done; every pixel has samples all the same
-  Lens lens;                           // as rendered with
-  std::vector<Matte> mattes;           // of the cryptomatte layer
+  std::optional<double> relative_standard_error;  // of the pixels, sqrt(Σ se² / Σ value²); absent: not known
+  std::uint64_t dropped_samples = 0;              // that were not finite, and were left black
+  bool interrupted = false;   // asked to stop before it was done; every pixel has samples all the same
+  Lens lens;                  // as rendered with
+  std::vector<Matte> mattes;  // of the cryptomatte layer
 };
 
 // The frame that `camera` sees under `lights` and the scene's emissive surfaces. Asked to stop, it gives what it has;

@@ -30,6 +30,7 @@ struct Sampling {
         noisy(options.bounces != 0 || with_punctual || paths.has_emission()),
         batches(std::min(kBatches, options.samples)) {}
 
+  bool tells_error() const { return !noisy || batches > 1; }
   int samples_of(int batch) const { return options.samples / batches + (batch < options.samples % batches ? 1 : 0); }
 
   PathTracer paths;
@@ -82,16 +83,18 @@ Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32
   for (int c = 0; c < 3; ++c) {
     double variance = 0;
     for (int b = 0; b < batches; ++b) variance += std::pow(double(means[b][c]) - double(mean[c]), 2);
-    error[c] = batches > 1 ? float(std::sqrt(variance / (batches * (batches - 1)))) : 0;
+    if (batches > 1) error[c] = float(std::sqrt(variance / (batches * (batches - 1))));
   }
   return {exact.direct + mean, error};
 }
 
-Illumination sized(std::size_t points) { return {std::vector<Vec3f>(points), std::vector<Vec3f>(points)}; }
+Illumination sized(std::size_t points, const Sampling& sampling) {
+  return {std::vector<Vec3f>(points), std::vector<Vec3f>(sampling.tells_error() ? points : 0)};
+}
 
 void store(const Estimate& estimate, std::size_t point, Illumination& all) {
   all.value[point] = estimate.value;
-  all.standard_error[point] = estimate.standard_error;
+  if (!all.standard_error.empty()) all.standard_error[point] = estimate.standard_error;
 }
 
 template <class Function>
@@ -102,12 +105,19 @@ void for_each_point(std::size_t points, const Control& control, const Function& 
   });
 }
 
+// Standard errors of the same points with another number of samples.
+std::vector<Vec3f> with_samples(const Illumination& traced, int samples, int others) {
+  std::vector<Vec3f> errors = traced.standard_error;
+  for (Vec3f& error : errors) error *= std::sqrt(float(samples) / float(others));
+  return errors;
+}
+
 }  // namespace
 
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control) {
   const Sampling sampling(tracer, lights, options);
-  Illumination result = sized(points.size());
+  Illumination result = sized(points.size(), sampling);
   for_each_point(points.size(), control, [&](std::size_t i) {
     std::vector<Vec3f> not_taken_apart;
     store(estimate(sampling, points[i], std::uint32_t(i), not_taken_apart), i, result);
@@ -119,7 +129,7 @@ IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::sp
                                                 const Lights& lights, const TraceOptions& options,
                                                 const Control& control) {
   const Sampling sampling(tracer, lights, options);
-  IlluminationByLight result{sized(points.size()),
+  IlluminationByLight result{sized(points.size(), sampling),
                              std::vector<std::vector<Vec3f>>(lights.size(), std::vector<Vec3f>(points.size()))};
   for_each_point(points.size(), control, [&](std::size_t i) {
     std::vector<Vec3f> per_light(sampling.paths.emission_source() + 1);
@@ -131,10 +141,13 @@ IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::sp
 
 Illumination joined(Illumination first, int first_samples, const Illumination& second, int second_samples) {
   const float b = float(second_samples) / float(first_samples + second_samples), a = 1 - b;
-  for (std::size_t i = 0; i < first.value.size(); ++i) {
-    first.value[i] = a * first.value[i] + b * second.value[i];
+  for (std::size_t i = 0; i < first.value.size(); ++i) first.value[i] = a * first.value[i] + b * second.value[i];
+  if (first.standard_error.empty()) first.standard_error = with_samples(second, second_samples, first_samples);
+  const std::vector<Vec3f> further =
+      second.standard_error.empty() ? with_samples(first, first_samples, second_samples) : second.standard_error;
+  for (std::size_t i = 0; i < further.size(); ++i) {
     Vec3f& error = first.standard_error[i];
-    for (int c = 0; c < 3; ++c) error[c] = std::hypot(a * error[c], b * second.standard_error[i][c]);
+    for (int c = 0; c < 3; ++c) error[c] = std::hypot(a * error[c], b * further[i][c]);
   }
   return first;
 }
@@ -145,7 +158,8 @@ int samples_for_noise(int samples, double noise, double may_be, int most) {
   return int(std::min(needed, double(most)));
 }
 
-double relative_standard_error(const Illumination& illumination) {
+std::optional<double> relative_standard_error(const Illumination& illumination) {
+  if (illumination.standard_error.empty() && !illumination.value.empty()) return std::nullopt;
   double error = 0, value = 0;
   for (std::size_t i = 0; i < illumination.value.size(); ++i) {
     error += squared_norm(illumination.standard_error[i]);

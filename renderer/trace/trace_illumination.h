@@ -1,6 +1,7 @@
 #pragma once
 // Illumination at surface points by unbiased path tracing: the reference for all that inverse lighting computes.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct SurfaceSample {
 
 struct Illumination {
   std::vector<Vec3f> value;           // cd/m²: irradiance / π, all bounces, the surface's own albedo left out
-  std::vector<Vec3f> standard_error;  // cd/m², of each value
+  std::vector<Vec3f> standard_error;  // cd/m², of each value; empty: not known, as a single path does not tell
 };
 
 // Illumination of each point under `lights` and the scene's emissive surfaces. Same result for any number of threads.
@@ -37,13 +38,14 @@ IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::sp
                                                 const Lights& lights, const TraceOptions& options,
                                                 const Control& control = {});
 
-// Two independent traces of the same points together, of so many samples each.
+// Two independent traces of the same points together, of so many samples each. Where the error of one is not known it
+// is taken from that of the other.
 Illumination joined(Illumination first, int first_samples, const Illumination& second, int second_samples);
 
 // How many samples it takes until `noise` of so many has come down to `may_be`: no fewer, and `most` at most.
 int samples_for_noise(int samples, double noise, double may_be, int most);
 
-// sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give.
-double relative_standard_error(const Illumination& illumination);
+// sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give, if it is known.
+std::optional<double> relative_standard_error(const Illumination& illumination);
 
 }  // namespace chiaro::renderer

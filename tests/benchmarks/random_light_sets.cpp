@@ -82,7 +82,7 @@ Target newly_traced(const Stage& stage, const std::vector<PointLight>& lights, d
   renderer::Lights all(lights.begin(), lights.end());
   const auto pilot =
       trace_illumination(stage.tracer, stage.some.samples, all, {kPilotSamples, -1, seed * 7919 + 5, true});
-  const double ratio = relative_standard_error(pilot) / noise;
+  const double ratio = *relative_standard_error(pilot) / noise;
   const int samples = std::max(4, int(std::ceil(kPilotSamples * ratio * ratio)));
   const auto traced =
       trace_illumination(stage.tracer, stage.receivers.samples, all, {samples, -1, seed * 7919 + 6, true});

@@ -93,7 +93,7 @@ class Laboratory {
     const SolveResult result = solved(row, method, target);
     outcome.guessed.push_back(int(result.lights.size()));
     outcome.error.push_back(100 * result.relative_l2);
-    outcome.noise.push_back(100 * std::hypot(result.target_noise, result.verification_noise));
+    outcome.noise.push_back(100 * std::hypot(result.target_noise, result.verification_noise.value_or(0)));
     outcome.beyond.push_back(100 * exact_.error(truth, result.lights));
     outcome.total.push_back(result.total_seconds - result.cache_seconds - verification_seconds(result));
     outcome.initial.push_back(result.initial_seconds);

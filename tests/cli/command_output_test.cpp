@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "inverse/target/target.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/image/image_file.h"
 #include "renderer/trace/cryptomatte.h"
@@ -57,6 +58,26 @@ const std::string* text_of(const renderer::Attributes& attributes, const std::st
     if (key == name) return std::get_if<std::string>(&value);
   }
   return nullptr;
+}
+
+TEST(CliRender, NoiseOfOneSampleIsNotKnown) {
+  const TemporaryFolder folder;
+  EXPECT_NE(render_preview(folder, {}).standard_output.find("not known"), std::string::npos);
+  const json summary = json::parse(render_preview(folder, {"--json"}).standard_output);
+  EXPECT_TRUE(summary.at("relative_standard_error").is_null());
+  for (const auto& [name, value] : renderer::load_image_header(folder / "frame.exr").attributes) {
+    EXPECT_NE(name, "chiaro:relative_standard_error");
+  }
+}
+
+TEST(CliIlluminate, OnePathWritesNoStandardErrors) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "lit.glb";
+  const Outcome outcome =
+      run_with({"illuminate", kScenes + "cornell.glb", "-o", file, "--max-edge", "0.5", "--samples", "1", "--json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+  EXPECT_TRUE(json::parse(outcome.standard_output).at("relative_standard_error").is_null());
+  EXPECT_TRUE(inverse::load_target(file).standard_error.empty());
 }
 
 TEST(CliRender, MattesHaveTheirManifest) {

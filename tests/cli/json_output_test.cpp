@@ -34,6 +34,11 @@ TEST(CliJsonOutput, NumbersThatAreNotFiniteAreNull) {
   EXPECT_EQ(json_text(Json(std::numeric_limits<float>::infinity())), "null\n");
 }
 
+TEST(CliJsonOutput, WhatIsNotKnownIsNull) {
+  EXPECT_EQ(json_text(Json(std::optional<double>())), "null\n");
+  EXPECT_EQ(json_text(Json(std::optional<double>(0.5))), "0.5\n");
+}
+
 TEST(CliJsonOutput, KeysStayInOrder) {
   EXPECT_EQ(json_text(JsonObject{{"b", 1}, {"a", 2}}), "{\n  \"b\": 1,\n  \"a\": 2\n}\n");
 }

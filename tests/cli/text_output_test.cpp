@@ -22,6 +22,11 @@ TEST(CliTextOutput, SecondsReadAsPeopleSayThem) {
   EXPECT_EQ(text_of_seconds(7500), "2 h 05 min");
 }
 
+TEST(CliTextOutput, PercentThatIsNotKnownIsSaidSo) {
+  EXPECT_EQ(text_of_percent(0.0412), "4.12 %");
+  EXPECT_EQ(text_of_percent(std::nullopt), "not known");
+}
+
 TEST(CliTextOutput, BytesHaveDecimalUnits) {
   EXPECT_EQ(text_of_bytes(12), "12 bytes");
   EXPECT_EQ(text_of_bytes(1.5e9), "1.5 GB");

@@ -127,8 +127,7 @@ TEST(Solve, KeepsToARegionFarFromTheBrightestReceivers) {
 
 // What is left of the error when the noise of the target and of the evaluation is taken off.
 double error_beyond_noise(const SolveResult& result) {
-  const double noise =
-      result.verification_noise * result.verification_noise + result.target_noise * result.target_noise;
+  const double noise = std::pow(result.verification_noise.value(), 2) + result.target_noise * result.target_noise;
   return std::sqrt(std::max(0.0, result.relative_l2 * result.relative_l2 - noise));
 }
 
@@ -143,7 +142,7 @@ TEST(Solve, FindsLightsThroughAllBouncesWithBothMethods) {
   EXPECT_LT(farthest_from(known, positions_of(joint)), 0.02 * corner.diagonal());
   EXPECT_LT(error_beyond_noise(joint), 0.02);
   EXPECT_GT(joint.target_noise, 0);
-  EXPECT_GT(joint.verification_noise, 0);
+  EXPECT_GT(joint.verification_noise.value(), 0);
 
   const SolveResult thesis = solve(problem, quick(SolveMethod::kThesis));
   EXPECT_GE(thesis.lights.size(), 2U);

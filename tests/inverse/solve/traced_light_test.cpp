@@ -45,7 +45,7 @@ TEST_F(TraceForVerification, TakesFewWhereNoiseHardlyMatters) {
     EXPECT_LE(traced.samples, most() / 4);
     EXPECT_GE(traced.samples, most() / 8);
   }
-  EXPECT_LE(relative_standard_error(trace(noisy, known_).all), 0.75 * target_noise(noisy));
+  EXPECT_LE(*relative_standard_error(trace(noisy, known_).all), 0.75 * target_noise(noisy));
 }
 
 // In two parts, and as one as long: the same light within both their standard errors. Of the thousands of receivers and
@@ -56,8 +56,8 @@ TEST_F(TraceForVerification, BothPartsCountByTheirSamples) {
   target.illumination = trace(target, known_, 2 * most()).all.value;
   const FreshTrace parts = trace(target, known_), whole = trace(target, known_, most());
   ASSERT_EQ(parts.samples, whole.samples);
-  EXPECT_NEAR(relative_standard_error(parts.all), relative_standard_error(whole.all),
-              0.1 * relative_standard_error(whole.all));
+  EXPECT_NEAR(*relative_standard_error(parts.all), *relative_standard_error(whole.all),
+              0.1 * *relative_standard_error(whole.all));
   std::size_t beyond = 0, all = 0;
   for (std::size_t i = 0; i < whole.all.value.size(); ++i) {
     const Vec3f sum = parts.of_light[0][i] + parts.of_light[1][i];

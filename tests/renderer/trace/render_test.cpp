@@ -78,7 +78,7 @@ TEST(Render, FurnaceIsOneColourAllOver) {
     }
   }
   expect_close(mean, {2, 4, 6}, 0.005F);
-  EXPECT_LT(frame.relative_standard_error, 0.03);
+  EXPECT_LT(frame.relative_standard_error.value(), 0.03);
   EXPECT_EQ(frame.samples, 256);
 }
 
@@ -221,9 +221,9 @@ TEST(Render, LearnsWhichLightsStandBehindWalls) {
     sum += double(many.image.pixels[i]);
     of_expected += double(expected.pixels[i]);
   }
-  EXPECT_NEAR(sum / of_expected, 1, 5 * many.relative_standard_error / 16);
+  EXPECT_NEAR(sum / of_expected, 1, 5 * many.relative_standard_error.value() / 16);
   // An eighth of the error is what 64 times the samples bring by themselves.
-  EXPECT_LT(many.relative_standard_error, 0.5 * few.relative_standard_error / 8);
+  EXPECT_LT(many.relative_standard_error.value(), 0.5 * few.relative_standard_error.value() / 8);
 }
 
 TEST(Render, SameBytesForAnyNumberOfThreads) {
@@ -252,7 +252,7 @@ TEST(Render, StatedErrorIsThatOfRepeatedFrames) {
   double stated = 0;
   for (std::uint64_t seed = 0; seed < kFrames; ++seed) {
     const Frame frame = render(tracer, camera, two_lights(), sized(16, 12, {.samples = 16, .seed = seed}));
-    stated += frame.relative_standard_error * frame.relative_standard_error / kFrames;
+    stated += std::pow(frame.relative_standard_error.value(), 2) / kFrames;
     frames.push_back(frame.image);
   }
   double spread = 0, value = 0;
@@ -268,6 +268,16 @@ TEST(Render, StatedErrorIsThatOfRepeatedFrames) {
   const double ratio = std::sqrt(spread / value / stated);
   EXPECT_LT(ratio, 1.12);
   EXPECT_GT(ratio, 0.88);
+}
+
+TEST(Render, OneSampleDoesNotTellItsNoise) {
+  const Scene scene = corner_with_lamp();
+  const RayTracer tracer(scene);
+  const auto frame = [&](int samples) {
+    return render(tracer, default_camera(scene), two_lights(), sized(16, 12, {.samples = samples}));
+  };
+  EXPECT_FALSE(frame(1).relative_standard_error);
+  EXPECT_GT(frame(2).relative_standard_error.value(), 0);
 }
 
 TEST(Render, NoiseThresholdSpendsSamplesWhereTheyAreNeeded) {
@@ -291,7 +301,7 @@ TEST(Render, NoiseThresholdSpendsSamplesWhereTheyAreNeeded) {
   EXPECT_NEAR(mean, frame.mean_samples, 1e-6);
   EXPECT_LT(mean, 256);
   EXPECT_GT(most, 2 * least);
-  EXPECT_LT(frame.relative_standard_error, 0.1);
+  EXPECT_LT(frame.relative_standard_error.value(), 0.1);
 }
 
 TEST(Render, InterruptedFramesAreWholeAndSaySo) {
@@ -334,11 +344,11 @@ TEST(Render, NoiseIsToldAndLayersAreNumbersHoweverBrightOrDim) {
     options.layers = {"variance"};
     return render(tracer, default_camera(scene), {PointLight{"", {3, 2, 3}, {candela, candela, candela}}}, options);
   };
-  const double expected = lit_by(1).relative_standard_error;
+  const double expected = lit_by(1).relative_standard_error.value();
   ASSERT_GT(expected, 0.01);
   for (const float candela : {1e-24F, 1e20F, 1e24F}) {
     const Frame frame = lit_by(candela);
-    EXPECT_NEAR(frame.relative_standard_error, expected, 1e-3 * expected) << candela;
+    EXPECT_NEAR(frame.relative_standard_error.value(), expected, 1e-3 * expected) << candela;
     EXPECT_EQ(frame.dropped_samples, 0U) << candela;
     EXPECT_TRUE(std::all_of(frame.image.pixels.begin(), frame.image.pixels.end(), [](float value) {
       return std::isfinite(value);

@@ -74,11 +74,31 @@ TEST(TraceIllumination, NoiseIsToldHoweverBrightOrDim) {
   const std::vector<SurfaceSample> points{{{2, 0.001F, 2}, {0, 1, 0}}, {{0.001F, 1, 3}, {1, 0, 0}}};
   const auto noise_of = [&](float candela) {
     const Lights lights{PointLight{"", {3, 2, 3}, {candela, candela, candela}}};
-    return relative_standard_error(trace_illumination(tracer, points, lights, {.samples = 8, .bounces = 2}));
+    return relative_standard_error(trace_illumination(tracer, points, lights, {.samples = 8, .bounces = 2})).value();
   };
   const double expected = noise_of(1);
   ASSERT_GT(expected, 0.001);
   for (const float candela : {1e-24F, 1e20F, 1e24F}) EXPECT_NEAR(noise_of(candela), expected, 1e-3 * expected);
+}
+
+TEST(TraceIllumination, OnePathDoesNotTellItsErrorButAnotherTraceDoes) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  const Lights lights{PointLight{"", {3, 2, 3}, {10, 10, 10}}};
+  const std::vector<SurfaceSample> points(100, {{2, 0.001F, 2}, {0, 1, 0}});
+  const auto traced = [&](int samples, std::uint64_t seed) {
+    return trace_illumination(tracer, points, lights, {.samples = samples, .bounces = 2, .seed = seed});
+  };
+  const Illumination one = traced(1, 1), many = traced(16, 2);
+  EXPECT_TRUE(one.standard_error.empty());
+  EXPECT_FALSE(relative_standard_error(one));
+  EXPECT_FALSE(relative_standard_error(joined(one, 1, one, 1)));
+  const double of_many = relative_standard_error(many).value(), expected = of_many * std::sqrt(16.0 / 17);
+  EXPECT_NEAR(relative_standard_error(joined(one, 1, many, 16)).value(), expected, 0.01 * expected);
+  EXPECT_NEAR(relative_standard_error(joined(many, 16, one, 1)).value(), expected, 0.01 * expected);
+  // Direct light alone is exact.
+  const auto direct = trace_illumination(tracer, points, lights, {.samples = 1, .bounces = 0});
+  EXPECT_EQ(relative_standard_error(direct), 0);
 }
 
 TEST(TraceIllumination, FurnaceGivesEmissionOverOneMinusAlbedo) {
