@@ -268,7 +268,11 @@ std::string fingerprint(const Receivers& receivers) {
 
 double fraction_on_surface(const renderer::RayTracer& tracer, const Receivers& receivers) {
   constexpr std::size_t kMostProbes = 2000;
-  const float reach = 1e-3F * tracer.bounds().diagonal();
+  // Far from the origin samples stand off their surface, and surfaces off their places, by what rounding calls for.
+  constexpr float kRoundings = 4;
+  const Box3f& box = tracer.bounds();
+  const float rounding = renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
+  const float reach = std::max(1e-3F * box.diagonal(), kRoundings * rounding);
   const std::size_t stride = std::max<std::size_t>(1, receivers.size() / kMostProbes);
   std::size_t probes = 0, found = 0;
   for (std::size_t i = 0; i < receivers.size(); i += stride, ++probes) {

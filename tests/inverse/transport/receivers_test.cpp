@@ -218,6 +218,22 @@ TEST(Receivers, OfAnotherSceneAreToldByTheirPlaces) {
   EXPECT_LT(fraction_on_surface(tracer, make_receivers(other, {})), 0.5);
 }
 
+TEST(Receivers, OfASceneFarFromTheOriginLieOnIt) {
+  for (const float far : {1e4F, 1e5F, 1e6F}) {
+    Scene scene;
+    renderer::Mesh room = test::room({2, 2, 2});
+    for (Vec3f& p : room.positions) p = p + Vec3f{far, 0, -far};
+    test::add_mesh(scene, room, test::lambert({1, 1, 1}), "room");
+    const RayTracer tracer(scene);
+    EXPECT_EQ(fraction_on_surface(tracer, make_receivers(scene, {.max_edge = 0.5F})), 1) << far;
+    // Of the same room elsewhere they do not.
+    for (Vec3f& p : room.positions) p = p + Vec3f{0.3F * far, 0, 0};
+    Scene elsewhere;
+    test::add_mesh(elsewhere, room, test::lambert({1, 1, 1}), "room");
+    EXPECT_EQ(fraction_on_surface(tracer, make_receivers(elsewhere, {.max_edge = 0.5F})), 0) << far;
+  }
+}
+
 TEST(Receivers, OfNothingOrOfTooMuchAreErrors) {
   EXPECT_THROW(make_receivers({}, {}), renderer::Error);
   EXPECT_THROW(make_receivers(test::corner_with_ball(), {.max_edge = 1e-5F}), renderer::Error);
