@@ -44,9 +44,21 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   return indices;
 }
 
+[[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {
+  throw Error({problem.tracer.scene().path, "solve", "no light possible: " + why,
+               "a target that lights inside the region can produce"});
+}
+
+[[noreturn]] void nothing_lit(const SolveProblem& problem) {
+  no_light_possible(problem, fmt::format("no position {}{} lights the painted surfaces",
+                                         where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)));
+}
+
 // Brightest contribution first.
-void report_lights(const LightResponse& response, const Observations& observations, const LightsByTrace& by_trace,
+void report_lights(const SolveProblem& problem, const RegionSearch& searched, const LightsByTrace& by_trace,
                    SolveResult& result) {
+  const LightResponse& response = searched.response;
+  const Observations& observations = searched.reported;
   const LightEstimates& lights = by_trace.lights;
   const LightIntervals intervals =
       by_trace.intervals ? *by_trace.intervals : light_intervals(response, observations, lights);
@@ -56,6 +68,7 @@ void report_lights(const LightResponse& response, const Observations& observatio
     norm.push_back(contribution_norm(observations, columns[j], lights[j].intensity));
   }
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
+  if (!(total > 0)) nothing_lit(problem);
   std::vector<std::size_t> order = all_indices(lights.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   std::vector<int> number(lights.size());
@@ -69,11 +82,6 @@ void report_lights(const LightResponse& response, const Observations& observatio
   for (const auto& [j, k] : intervals.confounded) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
 }
 
-[[noreturn]] void no_light_possible(const SolveProblem& problem, const std::string& why) {
-  throw Error({problem.tracer.scene().path, "solve", "no light possible: " + why,
-               "a target that lights inside the region can produce"});
-}
-
 void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
   if (options.earlier.empty() || !earlier_sets(options).empty()) return;
   std::vector<std::size_t> counts;
@@ -82,11 +90,6 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
       {problem.tracer.scene().path, "earlier solve",
        fmt::format("has no set of {} lights", options.exact_lights > 0 ? options.exact_lights : options.max_lights),
        fmt::format("one of {}", fmt::join(counts, ", "))});
-}
-
-[[noreturn]] void nothing_lit(const SolveProblem& problem) {
-  no_light_possible(problem, fmt::format("no position {}{} lights the painted surfaces",
-                                         where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)));
 }
 
 [[noreturn]] void too_crowded(const SolveProblem& problem, int lights) {
@@ -200,7 +203,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
   check_brightness(problem, brightest_of(by_trace.lights));
   result.optimal_seconds += by_trace.settling_seconds;
-  report_lights(searched->response, searched->reported, by_trace, result);
+  report_lights(problem, *searched, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
   result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
   result.termination = optimum.termination;

@@ -70,6 +70,19 @@ TEST_F(ConstrainedSolve, NoChannelIsBrighterThanAllowed) {
   for (const auto& light : lights) EXPECT_LE(double(max_component(light.intensity)), 4.1);
 }
 
+TEST_F(ConstrainedSolve, LightsThatMayNotBeSeenAreNoneThatArePossible) {
+  for (const int lights : {0, 1, 2}) {
+    SolveProblem ruled = problem(target_);
+    ruled.intensities.max_intensity = 1e-30;
+    try {
+      const SolveResult result = solve(ruled, options(lights));
+      ADD_FAILURE() << lights << ": " << result.lights.size() << " lights";
+    } catch (const renderer::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("no light possible"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(ConstrainedSolve, AllHaveOneColor) {
   SolveProblem ruled = problem(target_);
   ruled.intensities.one_color = true;
