@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "renderer/io/gltf_accessors.h"
+#include "renderer/io/mesh_vertices.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -82,15 +83,6 @@ void turn_mirrored(std::vector<Triangle>& triangles, const std::vector<bool>& mi
   for (Triangle& t : triangles) {
     if (int(mirrored[t[0]]) + int(mirrored[t[1]]) + int(mirrored[t[2]]) >= 2) std::swap(t[1], t[2]);
   }
-}
-
-void move_vertex(Mesh& mesh, std::size_t v, const Mat4f& transform, bool mirrored) {
-  mesh.positions[v] = transform_point(transform, mesh.positions[v]);
-  if (!mesh.normals.empty()) mesh.normals[v] = transform_normal(transform, mesh.normals[v]);
-  if (mesh.tangents.empty()) return;
-  const Vec4f t = mesh.tangents[v];
-  const Vec3f moved = transform_direction(transform, {t.x, t.y, t.z});
-  mesh.tangents[v] = {moved.x, moved.y, moved.z, mirrored ? -t.w : t.w};
 }
 
 }  // namespace

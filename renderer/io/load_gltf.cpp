@@ -1,6 +1,8 @@
 #include "renderer/io/load_gltf.h"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,27 +24,45 @@ std::string instance_name(const PlacedNode& node, const Mesh& mesh) {
   return mesh.name.empty() ? fmt::format("node {}", node.node) : mesh.name;
 }
 
+void check_vertices(const GltfDocument& document, const PlacedNode& node, const Mesh& mesh, const Mat4f& transform) {
+  for (const Vec3f& p : mesh.positions) check_in_world(document, node, transform_point(transform, p), "a vertex");
+}
+
 void add_instance(const GltfDocument& document, const PlacedNode& node, int index, const Mat4f& transform,
                   Scene& scene) {
-  const Mesh& mesh = scene.meshes[index];
-  for (const Vec3f& p : mesh.positions) check_in_world(document, node, transform_point(transform, p), "a vertex");
+  const Mesh& mesh = scene.meshes[std::size_t(index)];
+  check_vertices(document, node, mesh, transform);
   scene.instances.push_back({instance_name(node, mesh), index, transform});
 }
 
-// Copies without volume, as scales of zero make them, cannot be seen. Returns how many were left out.
+// Of transforms that have no inverse, as scales of zero, or none in floats. Adds nothing where no area is left.
+void add_as_mesh_of_its_own(const GltfDocument& document, const PlacedNode& node, int index, const Mat4f& transform,
+                            Scene& scene) {
+  check_vertices(document, node, scene.meshes[std::size_t(index)], transform);
+  std::optional<Mesh> mesh = mesh_in_world(scene, index, transform);
+  if (!mesh) return;
+  scene.meshes.push_back(*std::move(mesh));
+  add_instance(document, node, int(scene.meshes.size()) - 1, Mat4f{}, scene);
+}
+
+// Returns how many copies, scaled to nothing, were left out.
 std::size_t add_instances(const GltfDocument& document, const PlacedNode& node, const NodeMeshes& meshes,
                           Scene& scene) {
-  std::size_t flattened = 0;
+  std::size_t left_out = 0;
   for (const int mesh : meshes.in_world) add_instance(document, node, mesh, Mat4f{}, scene);
   for (const Mat4f& transform : instance_transforms(document, node)) {
-    const float determinant = determinant3(transform);
-    if (determinant == 0 || !std::isfinite(determinant)) {
-      ++flattened;
-      continue;
+    const bool invertible = std::isnormal(determinant3(transform));
+    const std::size_t before = scene.instances.size();
+    for (const int mesh : meshes.in_node) {
+      if (invertible) {
+        add_instance(document, node, mesh, transform, scene);
+      } else {
+        add_as_mesh_of_its_own(document, node, mesh, transform, scene);
+      }
     }
-    for (const int mesh : meshes.in_node) add_instance(document, node, mesh, transform, scene);
+    left_out += !meshes.in_node.empty() && scene.instances.size() == before ? 1 : 0;
   }
-  return meshes.in_node.empty() ? 0 : flattened;
+  return left_out;
 }
 
 void check_size(const GltfDocument& document, const Scene& scene) {
@@ -56,7 +76,7 @@ void warn(std::vector<std::string>& warnings, std::size_t count, const char* wha
   if (count > 0) warnings.push_back(fmt::format("{} {}", count, what));
 }
 
-void warn_of_repairs(const NodeMeshList& meshes, std::size_t flattened, std::vector<std::string>& warnings) {
+void warn_of_repairs(const NodeMeshList& meshes, std::size_t left_out, std::vector<std::string>& warnings) {
   const MeshRepairs& repairs = meshes.repairs;
   warn(warnings, repairs.degenerate_triangles, "triangles of zero area are left out");
   warn(warnings, repairs.bad_normals, "normals of no direction are replaced by the surface's");
@@ -64,7 +84,7 @@ void warn_of_repairs(const NodeMeshList& meshes, std::size_t flattened, std::vec
   warn(warnings, repairs.bad_coordinates, "texture coordinates or colours that are not finite are replaced");
   warn(warnings, repairs.bad_skin_weights, "vertices have skin weights that do not add up to 1; they are mended");
   warn(warnings, meshes.without_triangles, "primitives without triangles (points, lines) are left out");
-  warn(warnings, flattened, "instances scaled to nothing are left out");
+  warn(warnings, left_out, "instances scaled to nothing are left out");
 }
 
 }  // namespace
@@ -86,11 +106,11 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   const GltfPose pose = pose_at(document, options.animation, loaded.warnings);
   const std::vector<PlacedNode> nodes = place_nodes(document, pose);
   const NodeMeshList meshes = read_node_meshes(document, nodes, {world_from_nodes(document, pose), variant}, scene);
-  std::size_t flattened = 0;
+  std::size_t left_out = 0;
   for (std::size_t n = 0; n < nodes.size(); ++n)
-    flattened += add_instances(document, nodes[n], meshes.of_node[n], scene);
+    left_out += add_instances(document, nodes[n], meshes.of_node[n], scene);
   check_size(document, scene);
-  warn_of_repairs(meshes, flattened, loaded.warnings);
+  warn_of_repairs(meshes, left_out, loaded.warnings);
   if (scene.materials.empty()) scene.materials.push_back(default_material());
 
   scene.cameras = read_cameras(document, nodes);

@@ -10,4 +10,7 @@ namespace chiaro::renderer {
 // Makes new vertices out of those of a mesh: vertex i becomes what vertex sources[i] was. Triangles are the caller's.
 void gather_vertices(Mesh& mesh, const std::vector<std::uint32_t>& sources);
 
+// Position, normal and tangent, the last two of any length. mirrored: the transform's determinant is negative.
+void move_vertex(Mesh& mesh, std::size_t v, const Mat4f& transform, bool mirrored);
+
 }  // namespace chiaro::renderer

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "renderer/core/control.h"
 #include "renderer/io/gltf_morph_targets.h"
@@ -10,6 +11,7 @@
 #include "renderer/io/gltf_skins.h"
 #include "renderer/io/gltf_variants.h"
 #include "renderer/io/mesh_tangents.h"
+#include "renderer/io/mesh_vertices.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -153,6 +155,20 @@ NodeMeshList read_node_meshes(const GltfDocument& document, const std::vector<Pl
     }
   }
   return meshes;
+}
+
+std::optional<Mesh> mesh_in_world(const Scene& scene, int index, const Mat4f& world_from_object) {
+  Mesh mesh = scene.meshes[std::size_t(index)];
+  const bool mirrored = determinant3(world_from_object) < 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) move_vertex(mesh, v, world_from_object, mirrored);
+  for (Triangle& t : mesh.triangles) {
+    if (mirrored) std::swap(t[1], t[2]);
+  }
+  MeshRepairs not_of_the_file;
+  repair_mesh(mesh, not_of_the_file);
+  if (mesh.triangles.empty()) return std::nullopt;
+  make_missing_tangents(scene, mesh);
+  return mesh;
 }
 
 }  // namespace chiaro::renderer

@@ -1,6 +1,7 @@
 #pragma once
 // The meshes that the nodes of a glTF file show.
 
+#include <optional>
 #include <vector>
 
 #include "renderer/io/gltf_document.h"
@@ -34,5 +35,8 @@ Material default_material();
 // material get a default one, which is added to the materials. On all threads, in the order of the nodes.
 NodeMeshList read_node_meshes(const GltfDocument& document, const std::vector<PlacedNode>& nodes,
                               const NodeState& state, Scene& scene);
+
+// One of the scene's meshes, moved by a transform that need not have an inverse. Absent where no area is left.
+std::optional<Mesh> mesh_in_world(const Scene& scene, int index, const Mat4f& world_from_object);
 
 }  // namespace chiaro::renderer

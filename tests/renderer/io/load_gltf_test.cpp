@@ -218,6 +218,41 @@ TEST(GltfNodes, CopiesWithoutVolumeAreLeftOut) {
   EXPECT_TRUE(mentions(loaded.warnings, "1 instances scaled to nothing"));
 }
 
+TEST(GltfNodes, AScaleOfZeroAcrossAFlatMeshLeavesItAsItIs) {
+  GltfBuilder gltf = triangle_scene();
+  const LoadedScene whole = load(gltf);
+  gltf.root["nodes"][0]["scale"] = {1, 1, 0};
+  const LoadedScene flat = load(gltf);
+  ASSERT_EQ(flat.scene.instances.size(), 1U);
+  EXPECT_FALSE(mentions(flat.warnings, "scaled to nothing"));
+  const auto world = [](const Scene& scene) {
+    const Instance& instance = scene.instances[0];
+    std::vector<Vec3f> positions, normals;
+    for (const Vec3f p : scene.meshes[std::size_t(instance.mesh)].positions)
+      positions.push_back(transform_point(instance.world_from_object, p));
+    for (const Vec3f n : scene.meshes[std::size_t(instance.mesh)].normals)
+      normals.push_back(transform_normal(instance.world_from_object, n));
+    return std::pair(positions, normals);
+  };
+  EXPECT_EQ(world(flat.scene), world(whole.scene));
+  // Where the zero is along the triangle nothing is left.
+  gltf.root["nodes"][0]["scale"] = {0, 1, 1};
+  EXPECT_TRUE(load(gltf).scene.instances.empty());
+}
+
+TEST(GltfNodes, ScalesBeyondAllMeasureAreErrorsAndNotNothing) {
+  GltfBuilder gltf = triangle_scene();
+  for (const double scale : {1e10, 1e15, 1e30, -1e15}) {
+    gltf.root["nodes"][0]["scale"] = {scale, scale, scale};
+    try {
+      load(gltf);
+      ADD_FAILURE() << scale;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("nodes[0]: puts a vertex at"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(GltfNodes, GpuInstancingMultipliesANode) {
   GltfBuilder gltf = triangle_scene();
   const int translations = gltf.add_accessor<float>({0, 0, 0, 5, 0, 0}, 3, kFloat);
