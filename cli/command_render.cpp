@@ -38,10 +38,12 @@ void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, 
   if (lights.empty() && !has_emission(*stage.scene)) session.warn(stage.scene->path + ": no light: the frame is black");
 }
 
-void save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
+// Returns as save_frame().
+std::size_t save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
   const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common);
-  save_frame(frame, camera, options.output, origin, options.frame);
+  const std::size_t held = save_frame(frame, camera, options.output, origin, options.frame);
   if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame);
+  return held;
 }
 
 std::string text_of_samples(const renderer::Frame& frame) {
@@ -86,8 +88,8 @@ int run_render(const RenderCommand& options) {
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                              {trace_options(options.transport, options.common), session.control()});
-  save_outputs(options, camera, frame);
-  warn_of_frame(frame, options.output, session);
+  const std::size_t held = save_outputs(options, camera, frame);
+  warn_of_frame(frame, held, options.output, session);
   print_summary(session, options, camera, frame);
   return frame.interrupted ? interrupted_with(options.output) : kDone;
 }

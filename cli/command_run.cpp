@@ -75,9 +75,9 @@ renderer::Frame render_camera(const RunCommand& options, const LoadedStage& stag
   renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                        {trace_options(transport, options.common), session.control()});
   if (frame.interrupted) throw renderer::Interruption();
-  warn_of_frame(frame, camera.name, session);
   const FrameOrigin origin = frame_origin(options.scene, transport, options.common);
-  save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
+  const std::size_t held = save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
+  warn_of_frame(frame, held, camera.name, session);
   save_preview(frame.image, beside(file, ".png"), options.frame);
   return frame;
 }

@@ -89,7 +89,7 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
   add_parsed(command,
              {"--layers", "a,b|all", "Further layers: " + fmt::format("{}", fmt::join(renderer::frame_layers(), ", "))},
              [&options](const std::string& text) { options.layers = parse_words(text, renderer::frame_layers()); });
-  add_flag(command, "--float", options.full_float, "32-bit floats instead of 16-bit ones");
+  add_flag(command, "--float", options.full_float, "32-bit floats instead of 16-bit ones, which end at 65504");
   add_parsed(command, {"--filter", "NAME", "blackman-harris or box (default blackman-harris)"},
              [&options](const std::string& text) { options.box_filter = parse_filter(text); });
   add_number(command,
@@ -153,8 +153,8 @@ FrameOrigin frame_origin(const std::string& scene, const TransportOptions& trans
           .bounces = transport.bounces.value_or(-1)};
 }
 
-void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
-                const FrameOrigin& origin, const FrameOptions& options) {
+std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
+                       const FrameOrigin& origin, const FrameOptions& options) {
   const double aspect_ratio = double(frame.image.width) / frame.image.height;
   renderer::Attributes attributes = frame_attributes(camera, aspect_ratio, origin);
   add_attributes(attributes, frame, options);
@@ -163,16 +163,22 @@ void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, co
   const renderer::ChannelTypes type = channel_types(frame.image, options.full_float);
   if (options.output_space.empty()) {
     renderer::save_image(frame.image, path, type, attributes);
-    return;
+    return renderer::pixels_beyond_half(frame.image, type);
   }
   Image converted = frame.image;
   convert_to_output_space(converted, options);
   renderer::save_image(converted, path, type, attributes);
+  return renderer::pixels_beyond_half(converted, type);
 }
 
-void warn_of_frame(const renderer::Frame& frame, const std::string& name, Session& session) {
-  if (frame.dropped_samples == 0) return;
-  session.warn(fmt::format("{}: {} samples were not finite and are left black", name, frame.dropped_samples));
+void warn_of_frame(const renderer::Frame& frame, std::size_t held, const std::string& name, Session& session) {
+  if (frame.dropped_samples > 0) {
+    session.warn(fmt::format("{}: {} samples were not finite and are left black", name, frame.dropped_samples));
+  }
+  if (held > 0) {
+    session.warn(fmt::format(
+        "{}: {} pixels are brighter than half floats hold, and are held at 65504 (--float keeps them)", name, held));
+  }
 }
 
 void save_preview(const Image& frame, const std::filesystem::path& path, const FrameOptions& options) {

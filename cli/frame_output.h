@@ -48,12 +48,12 @@ renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::
 
 FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common);
 
-// What is to be said of a frame besides its figures.
-void warn_of_frame(const renderer::Frame& frame, const std::string& name, Session& session);
+// What is to be said of a frame besides its figures. held: as save_frame() returned.
+void warn_of_frame(const renderer::Frame& frame, std::size_t held, const std::string& name, Session& session);
 
-// Writes the frame as EXR with all of its attributes.
-void save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
-                const FrameOrigin& origin, const FrameOptions& options);
+// Writes the frame as EXR with all of its attributes. Returns how many of its pixels are held at the largest half.
+std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
+                       const FrameOrigin& origin, const FrameOptions& options);
 
 // Writes the frame's colours as the view shows them (8 bits).
 void save_preview(const renderer::Image& frame, const std::filesystem::path& path, const FrameOptions& options);

@@ -147,13 +147,15 @@ OIIO::ImageSpec spec_of(const Image& image, const ChannelTypes& types, const Att
   return spec;
 }
 
+bool is_held(float value) { return std::isfinite(value) && std::abs(value) > kMaxHalf; }
+
 // What halves cannot hold would become infinite.
 std::vector<float> clamped_to_half(const std::vector<float>& pixels, const OIIO::ImageSpec& spec) {
   std::vector<float> clamped = pixels;
   for (int c = 0; c < spec.nchannels; ++c) {
     if (spec.channelformat(c) != OIIO::TypeHalf) continue;
     for (std::size_t i = std::size_t(c); i < clamped.size(); i += std::size_t(spec.nchannels)) {
-      if (std::isfinite(clamped[i])) clamped[i] = std::clamp(clamped[i], -kMaxHalf, kMaxHalf);
+      if (is_held(clamped[i])) clamped[i] = std::copysign(kMaxHalf, clamped[i]);
     }
   }
   return clamped;
@@ -222,6 +224,18 @@ ImageFile load_image_header(const std::filesystem::path& path) {
 
 ImageFile load_image(const std::filesystem::path& path) {
   return read_through_library(path.string(), [&] { return read_image(path); });
+}
+
+std::size_t pixels_beyond_half(const Image& image, const ChannelTypes& types) {
+  const std::size_t channels = image.channel_names.size();
+  std::size_t beyond = 0;
+  for (std::size_t first = 0; first < image.pixels.size(); first += channels) {
+    bool held = false;
+    for (std::size_t c = 0; c < channels; ++c)
+      held = held || (types[c] == PixelType::kHalf && is_held(image.pixels[first + c]));
+    beyond += held ? 1 : 0;
+  }
+  return beyond;
 }
 
 void save_image(const Image& image, const std::filesystem::path& path, PixelType type, const Attributes& attributes) {

@@ -45,6 +45,9 @@ void save_image(const Image& image, const std::filesystem::path& path, const Cha
 void save_image(const Image& image, const std::filesystem::path& path, PixelType type,
                 const Attributes& attributes = {});
 
+// Pixels of which save_image holds a channel at the largest half, as they are more.
+std::size_t pixels_beyond_half(const Image& image, const ChannelTypes& types);
+
 // Decodes an encoded texture (PNG, JPEG, WebP …) in memory to RGBA8; `label` names it in errors.
 Texture decode_texture(std::string_view encoded, const std::string& label);
 

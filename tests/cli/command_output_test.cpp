@@ -60,6 +60,17 @@ const std::string* text_of(const renderer::Attributes& attributes, const std::st
   return nullptr;
 }
 
+TEST(CliRender, SaysHowManyPixelsHalvesDoNotHold) {
+  const TemporaryFolder folder;
+  const std::string lights =
+      folder.write("lights.json", R"({"lights":[{"position":[0,1,0],"intensity":[1e10,1e10,1e10]}]})").string();
+  const std::string held = " pixels are brighter than half floats hold";
+  const Outcome halves = render_preview(folder, {"--lights", lights});
+  EXPECT_NE(halves.standard_error.find(held), std::string::npos) << halves.standard_error;
+  EXPECT_EQ(render_preview(folder, {"--lights", lights, "--float"}).standard_error.find(held), std::string::npos);
+  EXPECT_EQ(render_preview(folder, {}).standard_error.find(held), std::string::npos);
+}
+
 TEST(CliRender, NoiseOfOneSampleIsNotKnown) {
   const TemporaryFolder folder;
   EXPECT_NE(render_preview(folder, {}).standard_output.find("not known"), std::string::npos);
