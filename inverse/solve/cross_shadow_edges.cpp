@@ -1,7 +1,7 @@
 #include "inverse/solve/cross_shadow_edges.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "inverse/transport/direct_light.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -36,7 +36,19 @@ class MovingLight {
         unoccluded_(bench.response.unoccluded(light.position)),
         direct_(bench.response.evaluate_with_gradient(light.position, Evaluation::kTracedVisibility)) {
     choose_brightest();
-    sum_up_others();
+  }
+
+  // Before squared_error_at().
+  void sum_up_others() {
+    const Vector3d intensity = light_.intensity.matrix();
+    for (const std::size_t i : others_) {
+      const Vector3d left = residual_.row(row(i)).transpose();
+      const double counts = weight(i) / std::pow(1 + left.squaredNorm() / squared_scale(i), 2);
+      const Vector3d by_move(direct_.gradient[0](row(i), 0), direct_.gradient[1](row(i), 0),
+                             direct_.gradient[2](row(i), 0));
+      gradient_ += counts * left.dot(intensity) * by_move;
+      hessian_ += counts * intensity.squaredNorm() * by_move * by_move.transpose();
+    }
   }
 
   // Squared error of receivers that seem to be lit, or hidden, and should not be.
@@ -88,18 +100,6 @@ class MovingLight {
     brightest_.resize(count);
   }
 
-  void sum_up_others() {
-    const Vector3d intensity = light_.intensity.matrix();
-    for (const std::size_t i : others_) {
-      const Vector3d left = residual_.row(row(i)).transpose();
-      const double counts = weight(i) / std::pow(1 + left.squaredNorm() / squared_scale(i), 2);
-      const Vector3d by_move(direct_.gradient[0](row(i), 0), direct_.gradient[1](row(i), 0),
-                             direct_.gradient[2](row(i), 0));
-      gradient_ += counts * left.dot(intensity) * by_move;
-      hessian_ += counts * intensity.squaredNorm() * by_move * by_move.transpose();
-    }
-  }
-
   const renderer::RayTracer& tracer_;
   const SettlingBench& bench_;
   const LightEstimate& light_;
@@ -143,8 +143,9 @@ bool cross_shadow_edges(const renderer::RayTracer& tracer, const SettlingBench& 
   bool any_moved = false;
   for (LightEstimate& light : lights) {
     const double worth_it = kWorthIt * std::pow(bench.norm(residual), 2);
-    const MovingLight moving(tracer, bench, light, residual);
+    MovingLight moving(tracer, bench, light, residual);
     if (moving.seemingly_wrong() < worth_it) continue;
+    moving.sum_up_others();
     const Vector3d place = look_around(moving, bench.response, light.position);
     if (moving.squared_error_at(light.position) - moving.squared_error_at(place) < worth_it) continue;
     const Column change = bench.response.direct(place) - bench.response.direct(light.position);

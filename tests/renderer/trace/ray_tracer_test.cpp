@@ -177,8 +177,8 @@ TEST(RayTracer, BlendedSurfacesStopTheirAlphaOfAllRays) {
   }
 }
 
-// Panes across each other: of coloured glass, and blended ones of which some are drawn twice. Those of one mesh are so
-// long that a hierarchy with spatial splits holds them in many leaves.
+// Panes across each other: of coloured glass, and blended ones of which some are drawn twice; and many long ones of one
+// mesh.
 Scene translucent_scene() {
   Scene scene;
   Material blended = lambert({1, 1, 1}), glass = lambert({0.9F, 0.8F, 0.3F});
