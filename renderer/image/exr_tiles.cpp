@@ -26,6 +26,7 @@
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
 #include "renderer/image/exr_header.h"
+#include "renderer/image/read_through_library.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -33,6 +34,7 @@ namespace {
 // zlib's fastest: the tenth that it leaves is not worth twice the time.
 constexpr int kZipLevel = 1;
 constexpr int kMostPixelsAcross = 1 << 30;
+constexpr const char* kExpected = "a tiled OpenEXR file";
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
   throw Error({path.string(), "", "cannot be written: " + reason, ""});
@@ -183,17 +185,19 @@ struct ExrTileReader::File {
 };
 
 bool ExrTileReader::is_tiled(const std::filesystem::path& path) {
+  std::error_code ignored;
   bool tiled = false;
-  return Imf::isOpenExrFile(path.c_str(), tiled) && tiled;
+  return std::filesystem::is_regular_file(path, ignored) && Imf::isOpenExrFile(path.c_str(), tiled) && tiled;
 }
 
 ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
+  require_file(path, kExpected);
   Imf::setGlobalThreadCount(thread_count());
   if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole file"});
   try {
     file_ = std::make_unique<File>(path);
   } catch (const std::exception& error) {
-    throw Error({path.string(), "header", fmt::format("cannot be read: {}", error.what()), "a tiled OpenEXR file"});
+    throw Error({path.string(), "header", fmt::format("cannot be read: {}", error.what()), kExpected});
   }
   const Imf::Header& header = file_->input.header();
   const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();

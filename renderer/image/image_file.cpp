@@ -71,9 +71,7 @@ bool has_extension(const std::filesystem::path& path, std::initializer_list<std:
 }
 
 std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw Error({path.string(), "", "no such file", ""});
-  if (!std::filesystem::is_regular_file(path, ignored)) throw Error({path.string(), "", "is not a file", "an image"});
+  require_file(path, "an image");
   if (has_extension(path, {".png", ".jpg", ".jpeg"})) {
     if (const auto damage = find_damage(read_file(path))) throw Error({path.string(), "", *damage, "a whole image"});
   }

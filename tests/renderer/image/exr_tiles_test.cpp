@@ -1,5 +1,7 @@
 #include "renderer/image/exr_tiles.h"
 
+#include <sys/stat.h>
+
 #include <gtest/gtest.h>
 
 #include "renderer/core/atomic_file.h"
@@ -100,6 +102,14 @@ TEST(ExrTiles, AFullDiskIsAnError) {
         writer.close();
       },
       Error);
+}
+
+// Nobody writes into it, and a library would wait for that.
+TEST(ExrTiles, PipesAreRefused) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe.exr").c_str(), 0600), 0);
+  EXPECT_FALSE(ExrTileReader::is_tiled(folder / "pipe.exr"));
+  EXPECT_THROW(ExrTileReader(folder / "pipe.exr"), Error);
 }
 
 TEST(ExrTiles, OtherFilesAreRefused) {
