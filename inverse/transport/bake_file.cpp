@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -76,6 +77,21 @@ struct Unfinished {
   std::unique_ptr<TransportCacheWriter> writer;
 };
 
+// Another file than what had the name: nothing is written through a link or a pipe, nor into a file with a second name.
+renderer::FileLock replace_file(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_directory(fs::symlink_status(file, ignored))) fs::remove(file, ignored);
+  return renderer::FileLock(file);
+}
+
+// Unless another process is writing it.
+renderer::FileLock replace_idle_file(const fs::path& file) {
+  std::error_code ignored;
+  std::optional<renderer::FileLock> there;
+  if (fs::is_regular_file(fs::symlink_status(file, ignored))) there.emplace(file);
+  return replace_file(file);
+}
+
 std::unique_ptr<TransportCacheWriter> begin_anew(const fs::path& unfinished, const TransportCache& header,
                                                  Range range) {
   return std::make_unique<TransportCacheWriter>(unfinished, header, range.first, range.last);
@@ -85,6 +101,7 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
            const renderer::Control& control, Unfinished& bake) {
   const auto unfinished_cache = open_unfinished(unfinished);
   if (!unfinished_cache) {
+    bake.lock = replace_file(unfinished);
     bake.writer = begin_anew(unfinished, header, range);
     return;
   }
@@ -95,7 +112,7 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
   }
   const fs::path aside = unfinished.string() + ".new";
   try {
-    Unfinished next{renderer::FileLock(aside), begin_anew(aside, header, range)};
+    Unfinished next{replace_idle_file(aside), begin_anew(aside, header, range)};
     start = take_over(old, range, *next.writer, control);
     std::error_code renamed;
     fs::rename(aside, unfinished, renamed);
@@ -150,7 +167,10 @@ BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptio
   const fs::path unfinished = unfinished_bake(file);
   Baker::Place start{0, range.first};
   const bool goes_on = options.resume && fs::exists(unfinished);
-  Unfinished bake{renderer::FileLock(unfinished), nullptr};
+  if (goes_on && !fs::is_regular_file(unfinished)) {
+    throw Error({unfinished.string(), "", "is not a file", "an unfinished bake, or no --resume"});
+  }
+  Unfinished bake{goes_on ? renderer::FileLock(unfinished) : replace_idle_file(unfinished), nullptr};
   if (goes_on) {
     go_on(unfinished, header, range, start, control, bake);
   } else {

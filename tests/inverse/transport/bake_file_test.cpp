@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include <sys/stat.h>
+
 #include <gtest/gtest.h>
 
 #include "renderer/core/atomic_file.h"
@@ -81,6 +83,21 @@ TEST_F(BakeFile, KeepsWhatIsDoneWhenInterrupted) {
   interrupted = false;
   EXPECT_EQ(read_file(bake_as({.shard = {}, .resume = true}, "stopped.exr", 26e6, control)), whole());
   EXPECT_GT(first, 0.05);
+}
+
+TEST_F(BakeFile, WritesThroughNothingThatHasItsName) {
+  const fs::path unfinished = unfinished_bake(folder_ / "baked.exr"), precious = folder_.write("precious", "precious");
+  const Shard part{0, 16};
+  const std::string expected = read_file(bake_as({.shard = part}, "expected.exr"));
+  fs::create_symlink(precious, unfinished);
+  EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder_ / "baked.exr")));
+  fs::create_hard_link(precious, unfinished);
+  EXPECT_EQ(read_file(bake_as({.shard = part, .resume = true}, "baked.exr")), expected);
+  EXPECT_EQ(read_file(precious), "precious");
+  ASSERT_EQ(::mkfifo(unfinished.c_str(), 0600), 0);
+  EXPECT_THROW(bake_as({.shard = part, .resume = true}, "baked.exr"), Error);
+  EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);
 }
 
 TEST_F(BakeFile, DoesNotGoOnWithAnother) {
