@@ -26,6 +26,17 @@ void refuse_empty(const std::string& text) {
   if (text.empty()) throw UsageError("is empty");
 }
 
+// CLI11 keeps nothing of others' with an option but checks. This one lets everything pass.
+constexpr const char* kNamesInputs = "names inputs";
+
+bool names_inputs(CLI::Option& option) {
+  try {
+    return option.get_validator(kNamesInputs) != nullptr;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 CLI::Option* add_parsed(CLI::App& command, const OptionText& text, std::function<void(const std::string&)> parse) {
@@ -54,8 +65,30 @@ CLI::Option* add_flag(CLI::App& command, const std::string& name, bool& value, c
   return command.add_flag(name, value, help);
 }
 
+CLI::Option* naming_inputs(CLI::Option* option) {
+  const auto pass = [](const std::string&) { return std::string(); };
+  return option->check(CLI::Validator(pass, "", kNamesInputs));
+}
+
+std::vector<std::string> input_files(CLI::App& command) {
+  std::vector<std::string> files;
+  for (CLI::Option* option : command.get_options()) {
+    if (!names_inputs(*option)) continue;
+    const bool after_name = option->get_type_name().find('=') != std::string::npos;
+    for (const std::string& text : option->results()) {
+      const std::size_t equals = after_name ? text.find('=') : text.npos;
+      files.push_back(equals == text.npos ? text : text.substr(equals + 1));
+    }
+  }
+  return files;
+}
+
+CLI::Option* add_input_file(CLI::App& command, const OptionText& text, std::string& value) {
+  return naming_inputs(add_text(command, text, value));
+}
+
 CLI::Option* add_input(CLI::App& command, const OptionText& text, std::string& value) {
-  return add_text(command, text, value)->required();
+  return add_input_file(command, text, value)->required();
 }
 
 CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& value,

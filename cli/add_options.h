@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/option_values.h"
 
@@ -52,8 +53,17 @@ CLI::Option* add_number(CLI::App& command, const OptionText& text, T& value, Num
                     [&value, range](const std::string& t) { value = parse_as<typename NumberOf<T>::Type>(t, range); });
 }
 
-// The positional argument NAME and `-o FILE`, both required. `extensions` is what the output may end in.
+// A file that the command reads; add_input: one that is required.
+CLI::Option* add_input_file(CLI::App& command, const OptionText& text, std::string& value);
 CLI::Option* add_input(CLI::App& command, const OptionText& text, std::string& value);
+
+// Makes any option one that names files which the command reads, as FILE or NAME=FILE: no output takes their place.
+CLI::Option* naming_inputs(CLI::Option* option);
+
+// What the options that name inputs were given.
+std::vector<std::string> input_files(CLI::App& command);
+
+// `-o FILE`, required. `extensions` is what the output may end in.
 CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& value,
                         const std::vector<std::string>& extensions);
 

@@ -7,7 +7,6 @@
 #include "cli/bake_summary.h"
 #include "cli/commands.h"
 #include "cli/memory.h"
-#include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
 #include "cli/text_output.h"
@@ -77,7 +76,7 @@ inverse::BakeSummary bake_saying_what_stays(const BakeCommand& options, inverse:
 
 int run_bake(const BakeCommand& options) {
   Session session(options.common);
-  require_writable(options.output);
+  session.require_outputs({options.output, inverse::unfinished_bake(options.output)});
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   environment_of(stage, options.transport.environment, session);  // refused where a solve would refuse it
   const inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);

@@ -86,10 +86,8 @@ int compare_two_targets(const CompareCommand& options, Session& session) {
 }
 
 int compare_two_frames(const CompareCommand& options, Session& session) {
-  if (!options.output.empty()) {
-    require_writable(options.output);
-    require_view(options.frames.view);
-  }
+  session.require_outputs({options.output});
+  if (!options.output.empty()) require_view(options.frames.view);
   const ComparedFrames frames = load_compared_frames(options.a, options.b, options.frames.view, options.resize);
   session.stop_if_interrupted();
   const FrameComparison comparison =

@@ -5,7 +5,6 @@
 #include "cli/add_options.h"
 #include "cli/commands.h"
 #include "cli/illumination_base.h"
-#include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
 #include "cli/text_output.h"
@@ -39,8 +38,7 @@ void print_summary(Session& session, const IlluminateCommand& options, const Tra
 
 int run_illuminate(const IlluminateCommand& options) {
   Session session(options.common);
-  require_writable(options.output);
-  require_apart({options.scene, options.lights}, {options.output});
+  session.require_outputs({options.output});
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   require_light(stage, lights);
@@ -59,7 +57,7 @@ CommandRun add_illuminate(CLI::App& command) {
   const auto options = std::make_shared<IlluminateCommand>();
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command, {"-o,--output", "T.glb", "The illumination, a target"}, options->output, {".glb", ".gltf"});
-  add_text(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
+  add_input_file(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
   add_surface_options(command, options->surface);
   add_transport_options(command, options->transport, "Paths per receiver");
   add_common_options(command, options->common);

@@ -6,7 +6,6 @@
 
 #include "cli/add_options.h"
 #include "cli/commands.h"
-#include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/session.h"
 #include "cli/text_output.h"
@@ -23,7 +22,7 @@ struct MergeCommand {
 
 int run_merge(const MergeCommand& options) {
   Session session(options.common);
-  require_writable(options.output);
+  session.require_outputs({options.output});
   const std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
   inverse::merge_transport_caches(parts, options.output, session.control());
   const double bytes = double(std::filesystem::file_size(options.output));
@@ -39,7 +38,7 @@ int run_merge(const MergeCommand& options) {
 
 CommandRun add_merge(CLI::App& command) {
   const auto options = std::make_shared<MergeCommand>();
-  command.add_option("parts", options->parts, "Parts made by `chiaro bake --shard`, in any order")
+  naming_inputs(command.add_option("parts", options->parts, "Parts made by `chiaro bake --shard`, in any order"))
       ->required()
       ->type_name("PART.exr");
   add_output(command, {"-o,--output", "C.exr", "The transport cache"}, options->output, {".exr"});

@@ -8,7 +8,6 @@
 #include "cli/commands.h"
 #include "cli/illumination_base.h"
 #include "cli/illumination_view.h"
-#include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
 #include "cli/text_output.h"
@@ -100,8 +99,8 @@ void print_summary(Session& session, const PaintCommand& options, const inverse:
 
 int run_paint(const PaintCommand& options) {
   Session session(options.common);
-  require_writable(options.output);
   require_picture(options.picture);
+  session.require_outputs({options.output, options.picture.file});
   const inverse::Strokes strokes = inverse::load_strokes(options.strokes);
   const inverse::Target base = make_base(options, strokes, session);
   const inverse::PaintResult result = apply_strokes(options, base, strokes);
@@ -119,7 +118,8 @@ CommandRun add_paint(CLI::App& command) {
   const auto options = std::make_shared<PaintCommand>();
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_input(command, {"--strokes", "S.json", "The brush strokes"}, options->strokes);
-  add_text(command, {"--from", "T.glb", "Start from this target instead of the base the strokes name"}, options->from);
+  add_input_file(command, {"--from", "T.glb", "Start from this target instead of the base the strokes name"},
+                 options->from);
   add_output(command, {"-o,--output", "T2.glb", "The painted target"}, options->output, {".glb", ".gltf"});
   add_number(
       command,

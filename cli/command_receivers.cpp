@@ -5,7 +5,6 @@
 #include "cli/add_options.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_options.h"
 #include "cli/session.h"
@@ -35,8 +34,7 @@ void print_summary(Session& session, const ReceiversCommand& options, const inve
 
 int run_receivers(const ReceiversCommand& options) {
   Session session(options.common);
-  require_writable(options.output);
-  require_apart({options.scene}, {options.output});
+  session.require_outputs({options.output});
   const renderer::LoadedScene loaded = renderer::load_gltf(options.scene, options.load);
   session.warn(loaded.warnings);
   const inverse::Receivers receivers = inverse::make_receivers(loaded.scene, {.max_edge = options.max_edge});

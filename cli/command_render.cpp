@@ -27,11 +27,8 @@ struct RenderCommand {
   bool preview = false;
 };
 
-void require_outputs(const RenderCommand& options) {
-  require_writable(options.output);
-  require_apart({options.transport.environment.image}, {options.output});
-  if (options.preview) require_writable(beside(options.output, ".png"));
-  require_color_choices(options.frame, options.preview);
+std::filesystem::path preview_of(const RenderCommand& options) {
+  return options.preview ? beside(options.output, ".png") : "";
 }
 
 void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, Session& session) {
@@ -42,7 +39,7 @@ void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, 
 std::size_t save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
   const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common);
   const std::size_t held = save_frame(frame, camera, options.output, origin, options.frame);
-  if (options.preview) save_preview(frame.image, beside(options.output, ".png"), options.frame);
+  if (options.preview) save_preview(frame.image, preview_of(options), options.frame);
   return held;
 }
 
@@ -54,7 +51,7 @@ std::string text_of_samples(const renderer::Frame& frame) {
 
 std::vector<std::string> written_files(const RenderCommand& options) {
   std::vector<std::string> files{options.output};
-  if (options.preview) files.push_back(beside(options.output, ".png").string());
+  if (options.preview) files.push_back(preview_of(options).string());
   return files;
 }
 
@@ -62,7 +59,7 @@ void print_summary(Session& session, const RenderCommand& options, const rendere
                    const renderer::Frame& frame) {
   const std::vector<std::string> written = written_files(options);
   JsonObject summary{{"output", options.output}};
-  if (options.preview) summary.emplace_back("preview", beside(options.output, ".png").string());
+  if (options.preview) summary.emplace_back("preview", preview_of(options).string());
   for (auto& figure : frame_summary(frame, camera.name)) summary.push_back(std::move(figure));
   summary.emplace_back("written", json_list(written));
   session.finish(summary, aligned_rows({{"camera", camera.name},
@@ -81,7 +78,8 @@ int interrupted_with(const std::string& output) {
 
 int run_render(const RenderCommand& options) {
   Session session(options.common);
-  require_outputs(options);
+  session.require_outputs({options.output, preview_of(options)});
+  require_color_choices(options.frame, options.preview);
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   warn_of_darkness(stage, lights, session);
@@ -100,7 +98,7 @@ CommandRun add_render(CLI::App& command) {
   const auto options = std::make_shared<RenderCommand>();
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command, {"-o,--output", "F.exr", "The frame"}, options->output, {".exr"});
-  add_text(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
+  add_input_file(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
   add_text(command, {"--camera", "NAME", "Camera (default: the first)"}, options->camera);
   add_number(command, {"--time", "SECONDS", "Render for so long; --samples is then the most"},
              options->frame.time_limit, kPositive);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/add_options.h"
 #include "cli/bake_summary.h"
@@ -55,17 +56,29 @@ renderer::Lights lights_of(const inverse::SolveResult& result, const inverse::So
   return lights;
 }
 
-std::vector<renderer::Camera> cameras_of(const LoadedStage& stage, Session& session) {
-  if (!stage.scene->cameras.empty()) return stage.scene->cameras;
-  return {choose_camera(*stage.scene, "", session)};
-}
-
 // Two cameras may have one name, or names that differ in what a file name cannot hold.
 std::string unused_name(const std::string& name, std::set<std::string>& used) {
   const std::string base = file_name_of(name);
   std::string candidate = base;
   for (int i = 2; !used.insert(candidate).second; ++i) candidate = fmt::format("{}-{}", base, i);
   return candidate;
+}
+
+struct NamedCamera {
+  renderer::Camera camera;
+  std::string file_name;  // without extension
+};
+
+std::vector<NamedCamera> cameras_of(const LoadedStage& stage, Session& session) {
+  std::vector<renderer::Camera> cameras = stage.scene->cameras;
+  if (cameras.empty()) cameras = {choose_camera(*stage.scene, "", session)};
+  std::vector<NamedCamera> named;
+  std::set<std::string> used;
+  for (renderer::Camera& camera : cameras) {
+    const std::string name = unused_name(camera.name, used);
+    named.push_back({std::move(camera), name});
+  }
+  return named;
 }
 
 renderer::Frame render_camera(const RunCommand& options, const LoadedStage& stage, const renderer::Camera& camera,
@@ -87,12 +100,11 @@ struct RenderedCameras {
   std::vector<PageCamera> pages;
 };
 
-RenderedCameras render_cameras(const RunCommand& options, const LoadedStage& stage, const renderer::Lights& lights,
-                               const RunPictures& pictures, Session& session) {
+RenderedCameras render_cameras(const RunCommand& options, const std::vector<NamedCamera>& cameras,
+                               const LoadedStage& stage, const renderer::Lights& lights, const RunPictures& pictures,
+                               Session& session) {
   RenderedCameras rendered;
-  std::set<std::string> used;
-  for (const renderer::Camera& camera : cameras_of(stage, session)) {
-    const std::string name = unused_name(camera.name, used);
+  for (const auto& [camera, name] : cameras) {
     const renderer::Frame frame =
         render_camera(options, stage, camera, lights, options.folder() / "frames" / (name + ".exr"), session);
     JsonObject summary = frame_summary(frame, camera.name);
@@ -154,11 +166,21 @@ void make_folders(const RunCommand& options) {
   make_folder(options.folder() / "pictures");
 }
 
-void require_inputs_elsewhere(const RunCommand& options) {
-  const std::filesystem::path folder = options.folder();
-  require_apart({options.scene, options.choices.target.file, options.choices.constraint_options.file},
-                {folder / "lights.glb", folder / "lights.json", folder / "found.glb", folder / "cache.exr",
-                 folder / "summary.json"});
+// A target file that is wanted as it is may well be that of an earlier run.
+std::vector<std::string> output_files(const RunCommand& options) {
+  std::vector<std::string> files{"lights.glb",           "lights.json",  "found.glb", "cache.exr",
+                                 "cache.exr.unfinished", "summary.json", "index.html"};
+  if (!is_target_file_alone(options.choices.target)) files.emplace_back("target.glb");
+  return files;
+}
+
+std::vector<std::string> picture_files(const std::vector<NamedCamera>& cameras) {
+  std::vector<std::string> files;
+  for (const NamedCamera& camera : cameras) {
+    for (const char* extension : {".exr", ".png"}) files.push_back("frames/" + camera.file_name + extension);
+    for (const std::string& name : run_picture_files(camera.file_name)) files.push_back("pictures/" + name);
+  }
+  return files;
 }
 
 int run_run(RunCommand options) {
@@ -166,18 +188,19 @@ int run_run(RunCommand options) {
   options.choices.target.encoding.view = options.frame.view;
   require_a_target(options.choices.target);
   settle_constraints(options.choices);
-  require_not_a_file(options.folder());
-  require_inputs_elsewhere(options);
+  session.require_outputs_in(options.folder(), output_files(options));
   require_color_choices(options.frame, true);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
+  const std::vector<NamedCamera> cameras = cameras_of(stage, session);
+  session.require_outputs_in(options.folder(), picture_files(cameras));
   warn_of_scene_lights(stage, options.choices, session);
   const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
   const inverse::Target& target = wanted.target;
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   make_folders(options);
   JsonObject summary = wanted.pictures;
-  if (!wanted.from_file) inverse::save_target(target, options.folder() / "target.glb");
+  if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   if (problem.lights_in_place.empty()) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
     problem.cache_file = options.folder() / "cache.exr";
@@ -189,7 +212,7 @@ int run_run(RunCommand options) {
   inverse::save_target(found, options.folder() / "found.glb");
   const inverse::TargetComparison comparison = inverse::compare_targets(found, target);
   const RenderedCameras rendered =
-      render_cameras(options, stage, lights_of(result, problem),
+      render_cameras(options, cameras, stage, lights_of(result, problem),
                      {*stage.tracer, target, found, options.frame, options.folder() / "pictures"}, session);
   summary.emplace_back("solve", solve_summary(result));
   summary.emplace_back("comparison", comparison_summary(comparison, target.receivers.positions[comparison.max_at]));
@@ -215,7 +238,8 @@ CommandRun add_run(CLI::App& command) {
   const auto options = std::make_shared<RunCommand>();
   options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
-  add_input(command, {"-o,--output", "DIR", "Folder for all results; made where it is missing"}, options->output);
+  add_text(command, {"-o,--output", "DIR", "Folder for all results; made where it is missing"}, options->output)
+      ->required();
   add_solve_options(command, options->choices);
   add_count(command, {"--frame-samples", "N", fmt::format("Paths per pixel (default {})", options->frame_samples)},
             options->frame_samples, {1, 1 << 24});

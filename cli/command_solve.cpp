@@ -10,6 +10,7 @@
 #include "cli/solve_options.h"
 #include "cli/usage_error.h"
 #include "inverse/solve/error_curve_file.h"
+#include "inverse/solve/report.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -62,11 +63,8 @@ int run_solve(SolveCommand options) {
   require_a_target(options.choices.target);
   settle_constraints(options.choices);
   refuse_what_excludes_each_other(options);
-  require_writable(options.output);
-  require_writable(beside(options.output, ".json"));
-  if (!options.save_target.empty()) require_writable(options.save_target);
-  require_apart({options.choices.target.file, options.from, options.choices.constraint_options.file, options.cache},
-                {options.output, beside(options.output, ".json"), options.save_target});
+  session.require_outputs({options.output, beside(options.output, ".json"), options.save_target});
+  if (!options.report.empty()) session.require_outputs_in(options.report, inverse::report_files());
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
@@ -96,12 +94,12 @@ CommandRun add_solve(CLI::App& command) {
   add_output(command, {"--save-target", "T.glb", "What the pictures and the target come to, as a target file"},
              options->save_target, {".glb", ".gltf"})
       ->required(false);
-  add_text(command, {"--cache", "C.exr", "A transport cache; without one solve bakes by itself"}, options->cache);
-  add_text(command,
-           {"--from", "SOLVE.json",
-            "The summary (--json) of another solve of this target: its lights are refined and no others looked for, as "
-            "for another --lights N"},
-           options->from);
+  add_input_file(command, {"--cache", "C.exr", "A transport cache; without one solve bakes by itself"}, options->cache);
+  add_input_file(command,
+                 {"--from", "SOLVE.json",
+                  "The summary (--json) of another solve of this target: its lights are refined and no others looked "
+                  "for, as for another --lights N"},
+                 options->from);
   add_text(command, {"--report", "DIR", "Write what each stage found into this folder"}, options->report);
   add_common_options(command, options->common);
   command.get_option("--grid")->excludes("--cache");

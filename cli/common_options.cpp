@@ -12,6 +12,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
              [&options](const std::string& text) { options.seed = parse_seed(text); });
   add_flag(command, "--json", options.json, "Print the summary as JSON, alone, on standard output");
   add_flag(command, "--quiet", options.quiet, "No progress, no warnings, no summary (but that of --json)");
+  command.final_callback([&command, &options] { options.inputs = input_files(command); });
   command.set_version_flag("--version", "chiaro " + program_version());
 }
 

@@ -40,8 +40,9 @@ void refuse_more_than_most(const inverse::LightConstraints& c) {
 
 void add_constraint_options(CLI::App& command, ConstraintOptions& options) {
   inverse::LightConstraints& given = options.given;
-  add_text(command, {"--constraints", "FILE", "What follows here, and regions, as a JSON file; options come first"},
-           options.file);
+  add_input_file(command,
+                 {"--constraints", "FILE", "What follows here, and regions, as a JSON file; options come first"},
+                 options.file);
   add_count(command, {"--max-lights", "N", "At most N lights (default 32)"}, given.max_lights, kLightCount);
   add_count(command, {"--lights", "N", "Exactly N lights"}, given.lights, kLightCount);
   add_repeated(

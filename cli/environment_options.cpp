@@ -29,10 +29,11 @@ void apply(const EnvironmentOptions& options, renderer::Lights& lights) {
 }  // namespace
 
 void add_environment_options(CLI::App& command, EnvironmentOptions& options) {
-  add_text(command,
-           {"--environment", "IMAGE",
-            "Light from all around (.exr, .hdr …; latitude-longitude, top +Y, middle +X, a quarter from the left -Z)"},
-           options.image);
+  add_input_file(
+      command,
+      {"--environment", "IMAGE",
+       "Light from all around (.exr, .hdr …; latitude-longitude, top +Y, middle +X, a quarter from the left -Z)"},
+      options.image);
   add_number(
       command,
       {"--environment-rotation", "DEGREES", "About +Y, to the left as seen from within: 90 turns -Z to -X (default 0)"},

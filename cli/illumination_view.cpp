@@ -76,11 +76,9 @@ void add_illumination_picture_options(CLI::App& command, IlluminationPictureOpti
 
 void require_picture(const IlluminationPictureOptions& options) {
   if (options.file.empty()) return;
-  if (!is_exr(options.file)) {
-    require_extension(options.file, {".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"});
-    require_view(options.view);
-  }
-  require_writable(options.file);
+  if (is_exr(options.file)) return;
+  require_extension(options.file, {".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"});
+  require_view(options.view);
 }
 
 void save_illumination_picture(const IlluminationPictureOptions& options, const std::string& scene,

@@ -28,7 +28,7 @@ struct IlluminationPictureOptions {
 
 void add_illumination_picture_options(CLI::App& command, IlluminationPictureOptions& options);
 
-// Error or UsageError where the file could not be written so: asked before the work.
+// Error or UsageError where there is no such kind of picture, or no such view: asked before the work.
 void require_picture(const IlluminationPictureOptions& options);
 
 // The target, on surfaces of the scene file, into the file: EXR holds cd/m² and alpha, others show them.

@@ -16,6 +16,7 @@
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
 #include "renderer/core/file_lock.h"
+#include "renderer/io/referred_files.h"
 
 namespace chiaro::cli {
 namespace {
@@ -48,15 +49,55 @@ bool is_standard_output(const std::filesystem::path& path) {
          renderer::names_open_file(path, STDOUT_FILENO);
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
 // Links in the place of the file itself are not followed: an output takes the link's place, not that of what it leads
 // to.
 bool are_same(const std::filesystem::path& a, const std::filesystem::path& b) {
   if (a.empty() || b.empty() || a.filename() != b.filename()) return false;
-  const auto folder = [](const std::filesystem::path& path) {
-    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  };
   std::error_code unknown;
-  return std::filesystem::equivalent(folder(a), folder(b), unknown);
+  return std::filesystem::equivalent(folder_of(a), folder_of(b), unknown);
+}
+
+// What is read through a link is lost with it, with any that it leads to, and with the file where they end.
+bool leads_to(std::filesystem::path input, const std::filesystem::path& output) {
+  constexpr int kMostLinks = 40;  // that Linux follows
+  std::error_code unknown;
+  for (int i = 0; i < kMostLinks && !are_same(input, output); ++i) {
+    if (!std::filesystem::is_symlink(input, unknown)) return false;
+    input = folder_of(input) / std::filesystem::read_symlink(input, unknown);
+  }
+  return are_same(input, output);
+}
+
+// The output that would take the input's place.
+const std::filesystem::path* in_place_of(const std::filesystem::path& input,
+                                         const std::vector<std::filesystem::path>& outputs) {
+  const auto found = std::find_if(outputs.begin(), outputs.end(), [&](const auto& o) { return leads_to(input, o); });
+  return found == outputs.end() ? nullptr : &*found;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& output, const std::string& problem) {
+  throw Error({output.string(), "", problem, "another name for the output"});
+}
+
+// Files are looked into only where an output is there already, and could be one of those that they refer to.
+void require_apart_from_referred(const std::vector<std::filesystem::path>& inputs,
+                                 const std::vector<std::filesystem::path>& outputs) {
+  std::error_code unknown;
+  const auto is_there = [&](const std::filesystem::path& output) {
+    return std::filesystem::exists(std::filesystem::symlink_status(output, unknown));
+  };
+  if (std::none_of(outputs.begin(), outputs.end(), is_there)) return;
+  for (const std::filesystem::path& input : inputs) {
+    for (const std::filesystem::path& referred : renderer::referred_files(input)) {
+      if (const auto* output = in_place_of(referred, outputs)) {
+        refuse(*output, fmt::format("is an input of this command: {} refers to it", input.string()));
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -73,7 +114,7 @@ void require_extension(const std::filesystem::path& path, const std::vector<std:
 
 void require_writable(const std::filesystem::path& path) {
   std::error_code ignored;
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const std::filesystem::path folder = folder_of(path);
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
   }
@@ -88,15 +129,16 @@ void require_writable(const std::filesystem::path& path) {
 
 void require_apart(const std::vector<std::filesystem::path>& inputs,
                    const std::vector<std::filesystem::path>& outputs) {
+  for (const std::filesystem::path& input : inputs) {
+    if (const auto* output = in_place_of(input, outputs)) refuse(*output, "is an input of this command");
+  }
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const auto is_the_same = [&](const auto& other) { return are_same(other, outputs[k]); };
-    if (std::any_of(inputs.begin(), inputs.end(), is_the_same)) {
-      throw Error({outputs[k].string(), "", "is an input of this command", "another name for the output"});
-    }
     if (std::any_of(outputs.begin(), outputs.begin() + std::ptrdiff_t(k), is_the_same)) {
       throw Error({outputs[k].string(), "", "is another output of this command", "a name of its own for each"});
     }
   }
+  require_apart_from_referred(inputs, outputs);
 }
 
 void require_not_a_file(const std::filesystem::path& folder) {

@@ -14,11 +14,11 @@ bool has_extension(const std::filesystem::path& path, const std::vector<std::str
 // Error where a file could not be made at `path`, or standard output is that file: asked before the long work starts.
 void require_writable(const std::filesystem::path& path);
 
-// Error where `folder` exists and is something else than a folder.
-// Error where an output would take the place of an input or of another output, whatever their names. Empty paths count
-// for nothing.
+// Error where an output would take the place of an input, of a file that an input refers to, or of another output,
+// whatever their names. Inputs are what links lead to, and the links. Empty paths count for nothing.
 void require_apart(const std::vector<std::filesystem::path>& inputs, const std::vector<std::filesystem::path>& outputs);
 
+// Error where `folder` exists and is something else than a folder.
 void require_not_a_file(const std::filesystem::path& folder);
 
 // Makes the folder where it is missing; Error where it cannot be made, is a file, or takes no files.

@@ -33,13 +33,17 @@ Image shrunk(const Image& image) {
   return result;
 }
 
+std::string name_of(const std::string& file_name, const std::string& kind) {
+  return fmt::format("{}.{}.png", file_name, kind);
+}
+
 class PictureWriter {
  public:
   PictureWriter(const RunPictures& run, const std::string& file_name) : folder_(run.folder), file_name_(file_name) {}
 
   PagePicture write(const std::string& kind, const std::string& title, const std::string& text,
                     const Image& shown) const {
-    const std::filesystem::path file = folder_ / fmt::format("{}.{}.png", file_name_, kind);
+    const std::filesystem::path file = folder_ / name_of(file_name_, kind);
     renderer::save_image(shown, file, renderer::PixelType::kUint8);
     return {title, text, renderer::read_file(file)};
   }
@@ -59,6 +63,11 @@ ViewChoice illumination_view(const RunPictures& run, const Image& target) {
 }
 
 }  // namespace
+
+std::vector<std::string> run_picture_files(const std::string& file_name) {
+  return {name_of(file_name, "target"), name_of(file_name, "found"), name_of(file_name, "difference"),
+          name_of(file_name, "frame")};
+}
 
 PageCamera make_page_camera(const RunPictures& run, const renderer::Camera& camera, const std::string& file_name,
                             const Image& frame, const renderer::Control& control) {

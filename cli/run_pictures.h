@@ -21,4 +21,7 @@ struct RunPictures {
 PageCamera make_page_camera(const RunPictures& run, const renderer::Camera& camera, const std::string& file_name,
                             const renderer::Image& frame, const renderer::Control& control);
 
+// What they are called in the folder.
+std::vector<std::string> run_picture_files(const std::string& file_name);
+
 }  // namespace chiaro::cli

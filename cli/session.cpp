@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "cli/interruption.h"
+#include "cli/output_paths.h"
 #include "cli/text_output.h"
 #include "renderer/core/error.h"
 #include "renderer/core/seconds_since.h"
@@ -27,6 +28,25 @@ void Session::warn(const std::vector<std::string>& texts) {
 
 void Session::stop_if_interrupted() const {
   if (control_.stop_requested()) throw renderer::Interruption();
+}
+
+void Session::require_outputs(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    if (!file.empty()) require_writable(file);
+  }
+  require_apart(files);
+}
+
+void Session::require_outputs_in(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  require_not_a_file(folder);
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : names) files.push_back(folder / name);
+  require_apart(files);
+}
+
+void Session::require_apart(const std::vector<std::filesystem::path>& files) {
+  outputs_.insert(outputs_.end(), files.begin(), files.end());
+  cli::require_apart({options_.inputs.begin(), options_.inputs.end()}, outputs_);
 }
 
 double Session::seconds() const { return renderer::seconds_since(start_); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,17 +25,25 @@ class Session {
   void stop_if_interrupted() const;
   double seconds() const;  // since the start
 
+  // Every command's first: Error where an output cannot be made, or would take the place of an input, of a file that an
+  // input refers to, or of another output. Empty paths count for nothing.
+  void require_outputs(const std::vector<std::filesystem::path>& files);
+  // The same of files in a folder that is made when the inputs are known to be good.
+  void require_outputs_in(const std::filesystem::path& folder, const std::vector<std::string>& names);
+
   // Prints the warnings, and the summary: as JSON, or as the text for people unless --quiet.
   void finish(const Json& summary, const std::string& text);
 
  private:
   void print_warnings();
+  void require_apart(const std::vector<std::filesystem::path>& files);
 
   CommonOptions options_;
   renderer::ThreadLimit thread_limit_;
   ProgressBar progress_;
   renderer::Control control_;
   std::vector<std::string> warnings_;
+  std::vector<std::filesystem::path> outputs_;
   std::chrono::steady_clock::time_point start_;
 };
 

@@ -38,13 +38,14 @@ inverse::PictureContent parse_content(const std::string& text) {
 }
 
 void add_picture_options(CLI::App& command, TargetChoices& choices) {
-  add_repeated(command,
-               {"--target-image", "CAMERA=IMAGE",
-                "A picture painted over a frame of that camera (without CAMERA=, the first); again for a further one"},
-               [&choices](const std::string& text) { choices.images.push_back(parse_named_file(text)); });
-  add_repeated(command,
-               {"--mask", "CAMERA=IMAGE", "How much each pixel of that camera's picture counts: white 1, black 0"},
-               [&choices](const std::string& text) { choices.masks.push_back(parse_named_file(text)); });
+  naming_inputs(add_repeated(
+      command,
+      {"--target-image", "CAMERA=IMAGE",
+       "A picture painted over a frame of that camera (without CAMERA=, the first); again for a further one"},
+      [&choices](const std::string& text) { choices.images.push_back(parse_named_file(text)); }));
+  naming_inputs(add_repeated(
+      command, {"--mask", "CAMERA=IMAGE", "How much each pixel of that camera's picture counts: white 1, black 0"},
+      [&choices](const std::string& text) { choices.masks.push_back(parse_named_file(text)); }));
   add_parsed(command,
              {"--image-content", "NAME",
               "beauty: the surfaces' colours are in the pictures and divided out; or illumination (default beauty)"},
@@ -65,10 +66,11 @@ NamedFile parse_lightmap(const std::string& text) {
 }
 
 void add_lightmap_options(CLI::App& command, TargetChoices& choices) {
-  add_repeated(command,
-               {"--target-lightmap", "NODE=IMAGE",
-                "Illumination of that node's surface, laid out by its texture coordinates; again for a further one"},
-               [&choices](const std::string& text) { choices.lightmaps.push_back(parse_lightmap(text)); });
+  naming_inputs(add_repeated(
+      command,
+      {"--target-lightmap", "NODE=IMAGE",
+       "Illumination of that node's surface, laid out by its texture coordinates; again for a further one"},
+      [&choices](const std::string& text) { choices.lightmaps.push_back(parse_lightmap(text)); }));
   add_count(command,
             {"--lightmap-uv", "N", "Lightmaps are laid out by TEXCOORD_N (default 1, or 0 where a mesh has no other)"},
             choices.lightmap_uv, {0, renderer::kUvSetCount - 1});
@@ -160,7 +162,6 @@ class TargetLoading {
     if (!choices_.lightmaps.empty()) read_lightmaps();
     if (values_.empty()) {
       wanted_.target = from_file();
-      wanted_.from_file = true;
       return std::move(wanted_);
     }
     if (choices_.file.empty()) {
@@ -247,7 +248,7 @@ class TargetLoading {
 }  // namespace
 
 void add_target_options(CLI::App& command, TargetChoices& choices) {
-  add_text(command, {"--target", "T.glb", "The painted illumination"}, choices.file);
+  add_input_file(command, {"--target", "T.glb", "The painted illumination"}, choices.file);
   add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, choices.scale, kPositive);
   add_picture_options(command, choices);
   add_lightmap_options(command, choices);
@@ -268,6 +269,8 @@ void require_a_target(const TargetChoices& choices) {
   }
   require_masks_of_pictures(choices);
 }
+
+bool is_target_file_alone(const TargetChoices& choices) { return choices.images.empty() && choices.lightmaps.empty(); }
 
 WantedTarget load_wanted_target(const LoadedStage& stage, const TargetChoices& choices, Session& session) {
   return TargetLoading(stage, choices, session).load();

@@ -36,11 +36,13 @@ void add_target_options(CLI::App& command, TargetChoices& choices);
 // UsageError where they contradict each other.
 void require_a_target(const TargetChoices& choices);
 
+// Whether a target file is wanted as it is, and nothing else.
+bool is_target_file_alone(const TargetChoices& choices);
+
 struct WantedTarget {
   inverse::Target target;
-  bool from_file = false;  // and nothing else
-  JsonObject pictures;     // "target_images" and "target_lightmaps": what was made of each; none where there are none
-  std::string text;        // the same for people
+  JsonObject pictures;  // "target_images" and "target_lightmaps": what was made of each; none where there are none
+  std::string text;     // the same for people
 };
 
 // Error where a file is of another scene, or where the pictures show nothing that could be wanted.

@@ -68,7 +68,8 @@ void add_max_edge_option(CLI::App& command, float& max_edge) {
 }
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options) {
-  add_text(command, {"--on", "R.glb", "The receivers of this file instead of ones made from the scene"}, options.on);
+  add_input_file(command, {"--on", "R.glb", "The receivers of this file instead of ones made from the scene"},
+                 options.on);
   add_max_edge_option(command, options.max_edge);
   command.get_option("--max-edge")->excludes("--on");
 }

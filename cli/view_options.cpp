@@ -18,8 +18,8 @@ void parse_exposure(const std::string& text, ViewChoice& choice) {
 }  // namespace
 
 void add_view_options(CLI::App& command, ViewChoice& choice) {
-  add_parsed(command, {"--ocio", "CONFIG", "OpenColorIO config (default: $OCIO, or the one installed)"},
-             [&choice](const std::string& text) { choice.config = text; });
+  naming_inputs(add_parsed(command, {"--ocio", "CONFIG", "OpenColorIO config (default: $OCIO, or the one installed)"},
+                           [&choice](const std::string& text) { choice.config = text; }));
   add_text(command, {"--display", "NAME", "Display of the config (default: its first)"}, choice.view.display);
   add_text(command, {"--view", "NAME", "View of the display (default: its first)"}, choice.view.view);
   add_text(command, {"--look", "NAME", "Look in place of the view's own, or none"}, choice.view.look);

@@ -32,6 +32,12 @@ std::vector<Vec3f> difference_times_8(const Target& target, const std::vector<Ve
 
 }  // namespace
 
+const std::vector<std::string>& report_files() {
+  static const std::vector<std::string> kFiles{"importance.glb",    "target.glb",  "found.glb",
+                                               "difference_x8.glb", "stages.json", "report.html"};
+  return kFiles;
+}
+
 void write_report(const SolveTrace& trace, const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

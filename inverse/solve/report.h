@@ -27,6 +27,9 @@ struct SolveTrace {
 // of every stage. Error where the folder cannot be made.
 void write_report(const SolveTrace& trace, const std::filesystem::path& folder);
 
+// The names of these files.
+const std::vector<std::string>& report_files();
+
 // Of both rounds, for the stage's figures.
 std::vector<std::pair<std::string, double>> distribution_figures(const LightDistribution& distribution);
 

@@ -1,6 +1,8 @@
 #include "renderer/io/gltf_container.h"
 
+#include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
@@ -92,6 +94,11 @@ std::size_t glb_size(const GltfContainer& container) {
   return size;
 }
 
+// Behind the byte order mark and white space.
+std::string_view without_blanks(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), text.size()));
+}
+
 }  // namespace
 
 bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
@@ -99,10 +106,30 @@ bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
 GltfContainer read_gltf_container(const std::filesystem::path& path) {
   std::string bytes = read_file(path);
   if (is_glb(bytes)) return read_glb(std::move(bytes), path.string());
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  if (first == std::string::npos) throw Error({path.string(), "", "is empty", "a glTF 2.0 scene"});
-  if (bytes[first] != '{') throw Error({path.string(), "", "is not a glTF file", ".glb or .gltf"});
+  const std::string_view text = without_blanks(bytes);
+  if (text.empty()) throw Error({path.string(), "", "is empty", "a glTF 2.0 scene"});
+  if (!text.starts_with('{')) throw Error({path.string(), "", "is not a glTF file", ".glb or .gltf"});
   return {std::move(bytes), {}, {}};
+}
+
+std::string read_gltf_json(const std::filesystem::path& path) {
+  constexpr std::size_t kBegin = kHeaderSize + kChunkHeaderSize, kHead = 4096;
+  std::error_code missing;
+  if (!std::filesystem::is_regular_file(path, missing)) return "";
+  const std::uintmax_t size = std::filesystem::file_size(path, missing);
+  std::ifstream stream(path, std::ios::binary);
+  const auto read = [&](std::size_t wanted) {
+    std::string bytes(std::min<std::uintmax_t>(wanted, size), '\0');
+    stream.read(bytes.data(), std::streamsize(bytes.size()));
+    bytes.resize(std::size_t(stream.gcount()));
+    return bytes;
+  };
+  const std::string head = read(kHead);
+  if (!is_glb(head)) return without_blanks(head).starts_with('{') ? read_file(path) : "";
+  if (head.size() < kBegin || read_uint32(head, kHeaderSize + 4) != kJsonChunk) return "";
+  stream.clear();
+  stream.seekg(kBegin);
+  return read(read_uint32(head, kHeaderSize));
 }
 
 std::string make_glb(const GltfContainer& container, const std::filesystem::path& path) {

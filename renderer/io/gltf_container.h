@@ -20,6 +20,9 @@ struct GltfContainer {
 // Error for a file that is neither, glTF 1.0, or truncated.
 GltfContainer read_gltf_container(const std::filesystem::path& path);
 
+// Its JSON alone, without the binary chunk being read. Empty for what is neither, and for what is no regular file.
+std::string read_gltf_json(const std::filesystem::path& path);
+
 bool is_glb(std::string_view bytes);
 
 // The bytes of a GLB. Error, naming `path`, for more than GLB's 4 GiB.

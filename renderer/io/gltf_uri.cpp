@@ -93,13 +93,10 @@ bool has_scheme(std::string_view uri) {
   return colon != std::string_view::npos && colon > 0;
 }
 
-// A name with a percent sign in it is as good as an encoded one.
 std::optional<std::filesystem::path> find_file(const std::string& uri, const std::filesystem::path& folder) {
-  for (const std::string& name : {percent_decoded(uri), uri}) {
+  for (const std::string& name : file_names_of(uri)) {
     std::error_code ignored;
-    if (name.find('\0') == std::string::npos && std::filesystem::is_regular_file(folder / name, ignored)) {
-      return folder / name;
-    }
+    if (std::filesystem::is_regular_file(folder / name, ignored)) return folder / name;
   }
   return std::nullopt;
 }
@@ -107,6 +104,12 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
 }  // namespace
 
 bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+
+std::vector<std::string> file_names_of(const std::string& uri) {
+  std::vector<std::string> names{percent_decoded(uri), uri};
+  std::erase_if(names, [](const std::string& name) { return name.find('\0') != std::string::npos; });
+  return names;
+}
 
 std::string make_data_uri(std::string_view mime_type, std::string_view bytes) {
   return fmt::format("data:{};base64,{}", mime_type, base64_encoded(bytes));

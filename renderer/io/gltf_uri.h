@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "renderer/core/external_files.h"
 
@@ -20,6 +21,9 @@ struct UriBase {
 std::string read_uri(const std::string& uri, const UriBase& base, const std::string& place);
 
 bool is_data_uri(std::string_view uri);
+
+// What the file that `uri` refers to may be called: a name with a percent sign in it is as good as an encoded one.
+std::vector<std::string> file_names_of(const std::string& uri);
 
 // "data:MIME;base64,…"
 std::string make_data_uri(std::string_view mime_type, std::string_view bytes);

@@ -64,5 +64,31 @@ TEST_F(CliOutputPaths, OutputsNeverTakeThePlaceOfInputsOrOfEachOther) {
   EXPECT_NO_THROW(require_apart({folder_ / "a.glb"}, {folder_ / "link.glb"}));  // the link itself is replaced
 }
 
+TEST_F(CliOutputPaths, InputsAreWhatLinksLeadTo) {
+  folder_.write("a.glb", "x");
+  fs::create_symlink("a.glb", folder_ / "inner.glb");
+  fs::create_symlink(folder_ / "inner.glb", folder_ / "outer.glb");
+  fs::create_symlink("loop.glb", folder_ / "loop.glb");
+  fs::create_hard_link(folder_ / "a.glb", folder_ / "hard.glb");
+  for (const char* output : {"a.glb", "inner.glb", "outer.glb"}) {
+    EXPECT_THROW(require_apart({folder_ / "outer.glb"}, {folder_ / output}), renderer::Error) << output;
+  }
+  EXPECT_NO_THROW(require_apart({folder_ / "outer.glb", folder_ / "loop.glb"}, {folder_ / "hard.glb"}));
+}
+
+TEST_F(CliOutputPaths, WhatInputsReferToIsAnInput) {
+  folder_.write("scene.gltf", R"({"buffers": [{"uri": "buffer.glb"}]})");
+  folder_.write("buffer.glb", "x");
+  fs::create_symlink("scene.gltf", folder_ / "link.gltf");
+  EXPECT_THROW(require_apart({folder_ / "scene.gltf"}, {folder_ / "buffer.glb"}), renderer::Error);
+  EXPECT_THROW(require_apart({folder_ / "link.gltf"}, {folder_ / "buffer.glb"}), renderer::Error);
+  EXPECT_NO_THROW(require_apart({folder_ / "scene.gltf"}, {folder_ / "other.glb"}));
+  fs::rename(folder_ / "buffer.glb", folder_ / "other.glb");
+  fs::create_symlink("other.glb", folder_ / "buffer.glb");
+  for (const char* output : {"buffer.glb", "other.glb"}) {
+    EXPECT_THROW(require_apart({folder_ / "scene.gltf"}, {folder_ / output}), renderer::Error) << output;
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::cli
