@@ -6,6 +6,7 @@
 #include "cli/add_options.h"
 #include "cli/bake_summary.h"
 #include "cli/commands.h"
+#include "cli/error_context.h"
 #include "cli/memory.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
@@ -67,7 +68,8 @@ void print_summary(Session& session, const BakeCommand& options, const inverse::
 
 inverse::BakeSummary bake_saying_what_stays(const BakeCommand& options, inverse::Baker& baker, Session& session) {
   try {
-    return inverse::bake_to_file(baker, options.output, options.file, session.control());
+    return naming_file(options.scene,
+                       [&] { return inverse::bake_to_file(baker, options.output, options.file, session.control()); });
   } catch (const renderer::Interruption&) {
     throw renderer::Interruption(fmt::format("what is done stays in {}, --resume goes on from there",
                                              inverse::unfinished_bake(options.output).string()));

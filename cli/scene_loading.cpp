@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/error_context.h"
 #include "renderer/core/error.h"
 #include "renderer/io/light_file.h"
 #include "renderer/scene/texture_mip_maps.h"
@@ -34,7 +35,8 @@ renderer::Lights choose_lights(const LoadedStage& stage, const std::string& ligh
   if (std::none_of(lights.begin(), lights.end(), renderer::is_environment)) {
     std::copy_if(stage.lights.begin(), stage.lights.end(), std::back_inserter(lights), renderer::is_environment);
   }
-  lights = with_environment(std::move(lights), environment, warnings);
+  lights = naming_file(light_file.empty() ? stage.scene->path : light_file,
+                       [&] { return with_environment(std::move(lights), environment, warnings); });
   session.warn(warnings);
   return lights;
 }

@@ -48,12 +48,12 @@ void add_grid_options(CLI::App& command, GridOptions& options) {
                {"--region", "NODE|x0,y0,z0,x1,y1,z1",
                 "Where lights may stand: the bounds of a node, or a box in metres; again for a further one (default: "
                 "the whole scene, and solves look beyond it if need be)"},
-               [&options](const std::string& text) { options.regions.push_back(parse_region_text(text)); });
+               [&options](const std::string& text) { options.regions.push_back({parse_region_text(text)}); });
 }
 
-std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<std::string>& regions) {
+std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<inverse::Region>& regions) {
   std::vector<renderer::Box3f> boxes;
-  for (const std::string& region : regions) boxes.push_back(inverse::parse_region(scene, region));
+  for (const inverse::Region& region : regions) boxes.push_back(inverse::parse_region(scene, region));
   return boxes;
 }
 

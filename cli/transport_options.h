@@ -33,11 +33,11 @@ inverse::BakeSettings bake_settings(const TransportOptions& transport, const Com
 // --grid and --region.
 struct GridOptions {
   GridSize size;
-  std::vector<std::string> regions;
+  std::vector<inverse::Region> regions;
 };
 
 void add_grid_options(CLI::App& command, GridOptions& options);
-std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<std::string>& regions);
+std::vector<renderer::Box3f> boxes_of(const renderer::Scene& scene, const std::vector<inverse::Region>& regions);
 inverse::LightGridOptions light_grid_options(const renderer::Scene& scene, const GridOptions& options);
 
 // --on and --max-edge.

@@ -25,7 +25,7 @@ std::string read_name(const JsonField& field) {
 Mount read_mount(const JsonField& field) {
   static constexpr std::string_view kKnown[] = {"on", "clearance"};
   expect_object(field, kKnown, std::span(kKnown).first(1));
-  Mount mount{read_name(field.member("on"))};
+  Mount mount{read_name(field.member("on")), {}, {field.file, field.place}};
   if (field.has("clearance")) {
     mount.clearance = read_double(field.member("clearance"), kNotNegative, "a number ≥ 0, metres");
   }
@@ -47,7 +47,8 @@ void read_regions(const JsonField& field, LightConstraints& constraints) {
     if (region.value.is_object()) {
       constraints.mounts.push_back(read_mount(region));
     } else {
-      constraints.regions.push_back(region.value.is_array() ? read_box(region) : read_name(region));
+      const std::string text = region.value.is_array() ? read_box(region) : read_name(region);
+      constraints.regions.push_back({text, {region.file, region.place}});
     }
   }
 }

@@ -14,7 +14,7 @@ namespace chiaro::inverse {
 // What is absent is not constrained.
 struct LightConstraints {
   std::optional<int> lights, max_lights;
-  std::vector<std::string> regions;  // as parse_region() takes them
+  std::vector<Region> regions;
   std::vector<Mount> mounts;
   std::optional<double> surface_distance, light_distance;  // metres
   std::optional<double> max_intensity;                     // candela

@@ -20,6 +20,7 @@ inline constexpr double kAtBorder = 0.005;
 struct Mount {
   std::string node;
   std::optional<double> clearance{};  // metres, from its surfaces; absent: a hundredth of the scene's diagonal
+  AskedIn asked_in{"", "option --on-surface"};
 };
 
 struct PlaceRules {

@@ -242,11 +242,13 @@ std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, con
   return positions;
 }
 
-Box3f parse_region(const renderer::Scene& scene, const std::string& text) {
+Box3f parse_region(const renderer::Scene& scene, const Region& region) {
+  const auto& [text, asked_in] = region;
+  const std::string& file = asked_in.file.empty() ? scene.path : asked_in.file;
   if (const auto box = six_numbers(text)) {
     const bool within = renderer::in_world(box->min) && renderer::in_world(box->max);
     if (within && box->diagonal() > 0) return *box;
-    throw Error({scene.path, "option --region", within ? "is a single point" : "reaches too far",
+    throw Error({file, asked_in.place, within ? "is a single point" : "reaches too far",
                  fmt::format("a box within {:g} m of the origin", renderer::kWorldLimit)});
   }
   Box3f box;
@@ -256,7 +258,7 @@ Box3f parse_region(const renderer::Scene& scene, const std::string& text) {
       box.extend(transform_point(instance.world_from_object, p));
   }
   if (box.empty()) {
-    throw Error({scene.path, "option --region", fmt::format("no node with a mesh is named \"{}\"", text),
+    throw Error({file, asked_in.place, fmt::format("no node with a mesh is named \"{}\"", text),
                  "a node's name, or x0,y0,z0,x1,y1,z1 in metres"});
   }
   return box;

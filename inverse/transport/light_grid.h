@@ -85,7 +85,17 @@ Vec3f random_position(const Box3f& box, renderer::Sampler& sampler);
 std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, const Box3f& region, std::size_t count,
                                           std::uint64_t seed);
 
-// `--region`: the world bounds of a node's instances by name, or "x0,y0,z0,x1,y1,z1". Error naming what is wrong.
-Box3f parse_region(const renderer::Scene& scene, const std::string& text);
+// Where something was asked for, for messages: a file and the place in it, or no file and an option.
+struct AskedIn {
+  std::string file, place;
+};
+
+struct Region {
+  std::string text;  // the name of a node, or "x0,y0,z0,x1,y1,z1", metres
+  AskedIn asked_in{"", "option --region"};
+};
+
+// The world bounds of a node's instances, or the box. Error naming what is wrong.
+Box3f parse_region(const renderer::Scene& scene, const Region& region);
 
 }  // namespace chiaro::inverse

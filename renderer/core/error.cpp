@@ -1,5 +1,6 @@
 #include "renderer/core/error.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,6 +14,7 @@ std::string Error::format(const Parts& parts) {
     text += *part;
   }
   if (!parts.expected.empty()) text += " (expected " + parts.expected + ")";
+  std::replace(text.begin(), text.end(), '\0', ' ');  // what() ends there, and names in files may have one
   return text;
 }
 

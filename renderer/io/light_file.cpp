@@ -160,8 +160,9 @@ json parse(const std::string& text, const std::string& file) {
 }
 
 Lights read_json_lights(const json& root, const std::string& file, std::vector<std::string>& warnings) {
-  if (!root.is_object() || !root.contains("lights") || !root["lights"].is_array()) {
-    throw Error({file, "lights", "is missing", "a light file, {\"lights\":[…]}"});
+  const bool missing = !root.is_object() || !root.contains("lights");
+  if (missing || !root["lights"].is_array()) {
+    throw Error({file, "lights", missing ? "is missing" : "is not an array", "a light file, {\"lights\":[…]}"});
   }
   Lights lights;
   for (const json& fields : root["lights"]) {

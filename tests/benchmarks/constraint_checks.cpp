@@ -128,7 +128,7 @@ bool hangs_on(const renderer::Scene& scene, const Mount& mount, const Vector3d& 
 
 bool is_in_a_region(const renderer::Scene& scene, const LightConstraints& c, const Vector3d& position) {
   if (c.regions.empty() && c.mounts.empty()) return true;
-  const auto in_box = [&](const std::string& region) {
+  const auto in_box = [&](const inverse::Region& region) {
     return inverse::parse_region(scene, region).contains(inverse::to_vec3f(position));
   };
   const auto on_node = [&](const Mount& mount) { return hangs_on(scene, mount, position); };
@@ -214,7 +214,7 @@ void check_count(const LightConstraints& c, std::size_t count, std::vector<Viola
 std::vector<Vector3d> random_places(const renderer::RayTracer& tracer, const LightConstraints& c, std::uint64_t seed) {
   const renderer::Scene& scene = tracer.scene();
   std::vector<Box3f> boxes;
-  for (const std::string& region : c.regions) boxes.push_back(inverse::parse_region(scene, region));
+  for (const inverse::Region& region : c.regions) boxes.push_back(inverse::parse_region(scene, region));
   if (c.regions.empty() && c.mounts.empty()) boxes.push_back(tracer.bounds());
   std::vector<std::vector<std::array<Vector3d, 3>>> triangles(c.mounts.size());
   for (std::size_t m = 0; m < c.mounts.size(); ++m) {

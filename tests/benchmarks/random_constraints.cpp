@@ -68,7 +68,7 @@ class RandomCase {
   void draw_regions() {
     LightConstraints& c = case_.constraints;
     for (int k = happens(kOften) ? whole(1, 3) : 0; k > 0; --k) {
-      c.regions.push_back(happens(0.2) ? random_node() : random_box());
+      c.regions.push_back({happens(0.2) ? random_node() : random_box()});
     }
     for (int k = happens(kOften) ? whole(1, 2) : 0; k > 0; --k) {
       inverse::Mount& mount = c.mounts.emplace_back(inverse::Mount{random_node()});
@@ -141,8 +141,8 @@ std::string json_of(const LightConstraints& c) {
   const auto flag = [&](const char* name, bool value) {
     if (value) fields.push_back(fmt::format(R"("{}":true)", name));
   };
-  for (const std::string& region : c.regions) {
-    regions.push_back(is_box(region) ? fmt::format("[{}]", region) : fmt::format("\"{}\"", region));
+  for (const auto& [text, asked_in] : c.regions) {
+    regions.push_back(is_box(text) ? fmt::format("[{}]", text) : fmt::format("\"{}\"", text));
   }
   for (const inverse::Mount& mount : c.mounts) regions.push_back(json_of(mount));
   if (!regions.empty()) fields.push_back(fmt::format(R"("regions":[{}])", fmt::join(regions, ",")));

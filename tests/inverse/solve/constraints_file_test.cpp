@@ -28,11 +28,15 @@ TEST(ConstraintsFile, ReadsEveryField) {
       "one_color":true,"keep_lights":true,"keep_positions":false})");
   EXPECT_EQ(c.lights, 3);
   EXPECT_EQ(c.max_lights, 5);
-  EXPECT_EQ(c.regions, (std::vector<std::string>{"Room", "0,1,2,3.5,4,5"}));
+  ASSERT_EQ(c.regions.size(), 2U);
+  EXPECT_EQ(c.regions[0].text, "Room");
+  EXPECT_EQ(c.regions[1].text, "0,1,2,3.5,4,5");
   ASSERT_EQ(c.mounts.size(), 2U);
   EXPECT_EQ(c.mounts[0].node, "Ceiling");
   EXPECT_EQ(c.mounts[0].clearance, 0.25);
   EXPECT_FALSE(c.mounts[1].clearance);
+  EXPECT_EQ(c.regions[1].asked_in.place, "regions[1]");
+  EXPECT_EQ(c.mounts[1].asked_in.place, "regions[3]");
   EXPECT_EQ(c.surface_distance, 0.125);
   EXPECT_EQ(c.light_distance, 0.5);
   EXPECT_EQ(c.max_intensity, 800);
@@ -74,16 +78,17 @@ TEST(ConstraintsFile, FaultsAreNamedByPlace) {
 TEST(ConstraintsFile, OptionsComeFirst) {
   LightConstraints options, file;
   options.max_lights = 2;
-  options.regions = {"Here"};
+  options.regions = {{"Here"}};
   file.max_lights = 7;
   file.light_distance = 1;
-  file.regions = {"There"};
+  file.regions = {{"There"}};
   file.mounts = {{"Ceiling", 0.1}};
   file.one_color = true;
   const LightConstraints both = merged(options, file);
   EXPECT_EQ(both.max_lights, 2);
   EXPECT_EQ(both.light_distance, 1);
-  EXPECT_EQ(both.regions, (std::vector<std::string>{"Here"}));
+  ASSERT_EQ(both.regions.size(), 1U);
+  EXPECT_EQ(both.regions[0].text, "Here");
   EXPECT_TRUE(both.mounts.empty());
   EXPECT_TRUE(both.one_color);
 }

@@ -154,6 +154,12 @@ TEST_F(Places, ThatDoNotExistAreToldSo) {
   std::vector<Vector3d> two{{1, 1, 1}, {1.1, 1.1, 1.1}};
   EXPECT_FALSE(small.settle(two));
   EXPECT_THROW(AllowedPlaces(scene_, bounds_, {.mounts = {{"no such node", 0}}}), renderer::Error);
+  try {
+    AllowedPlaces(scene_, bounds_, {.mounts = {{"no such node", 0, {"limits.json", "regions[2]"}}}});
+    ADD_FAILURE() << "no error";
+  } catch (const renderer::Error& error) {
+    EXPECT_EQ(error.parts().file + ": " + error.parts().place, "limits.json: regions[2]");
+  }
   EXPECT_THROW(AllowedPlaces(scene_, bounds_, {.boxes = {{{90, 90, 90}, {91, 91, 91}}}}), renderer::Error);
   const std::string node = scene_.instances.back().name;
   EXPECT_THROW(AllowedPlaces(scene_, bounds_, {.mounts = {{node, 0.1}}, .surface_distance = 0.2}), renderer::Error);

@@ -148,10 +148,10 @@ TEST(LightGrid, RoomsWithWallsTurnedOutwardsStillHaveLights) {
 TEST(ParseRegion, TakesSixNumbersOrANodesName) {
   Scene scene = room_with_ball();
   scene.instances[1].world_from_object = renderer::make_transform({10, 0, 0}, {0, 0, 0, 1}, {1, 1, 1});
-  EXPECT_EQ(parse_region(scene, "1,2,3,4,5,6").max, (Vec3f{4, 5, 6}));
-  EXPECT_EQ(parse_region(scene, "4,-5,6,1,2,3").min, (Vec3f{1, -5, 3}));
-  EXPECT_EQ(parse_region(scene, "1e-3,0,0,1,1,1").min.x, 1e-3F);
-  const Box3f ball = parse_region(scene, "ball");
+  EXPECT_EQ(parse_region(scene, {"1,2,3,4,5,6"}).max, (Vec3f{4, 5, 6}));
+  EXPECT_EQ(parse_region(scene, {"4,-5,6,1,2,3"}).min, (Vec3f{1, -5, 3}));
+  EXPECT_EQ(parse_region(scene, {"1e-3,0,0,1,1,1"}).min.x, 1e-3F);
+  const Box3f ball = parse_region(scene, {"ball"});
   EXPECT_LT(length(ball.center() - (kBall + Vec3f{10, 0, 0})), 0.02F);
   EXPECT_NEAR(ball.extent().y, 2 * kBallRadius, 0.01F);
 }
@@ -161,11 +161,24 @@ TEST(ParseRegion, RefusesTheRestByItsText) {
   for (const char* text : {"", "bal", "1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,six", "1,2,3,4,5,6 ",
                            "nan,0,0,1,1,1", "0,0,0,inf,1,1", "1;2;3;4;5;6"}) {
     try {
-      parse_region(scene, text);
+      parse_region(scene, {text});
       ADD_FAILURE() << text;
     } catch (const Error& error) {
       EXPECT_NE(error.parts().place.find("--region"), std::string::npos);
       EXPECT_NE(error.parts().problem.find(std::string("\"") + text + "\""), std::string::npos);
+    }
+  }
+}
+
+TEST(ParseRegion, RefusesThatOfAFileByItsPlaceThere) {
+  const Scene scene = room_with_ball();
+  for (const char* text : {"bal", "1,2,3,1,2,3"}) {
+    try {
+      parse_region(scene, {text, {"limits.json", "regions[2]"}});
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.parts().file, "limits.json");
+      EXPECT_EQ(error.parts().place, "regions[2]");
     }
   }
 }

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
     Table, BadLightFile,
     testing::Values(
         BadLights{"Empty", "", "JSON"}, BadLights{"HalfAnObject", "{", "JSON"}, BadLights{"AList", "[]", "lights"},
-        BadLights{"LightsAreANumber", R"({"lights":3})", "lights"},
+        BadLights{"LightsAreANumber", R"({"lights":3})", "lights: is not an array"},
         BadLights{"NoLights", R"({"lights":[]})", "there are none"},
         BadLights{"ALightIsANumber", R"({"lights":[4]})", "lights[0]"},
         BadLights{"NoIntensity", R"({"lights":[{"position":[1,2,3]}]})", "lights[0].intensity: is missing"},
