@@ -42,6 +42,14 @@ bool contains(const NumberRange& range, double value) {
   return (range.min_excluded ? range.min < value : range.min <= value) && value <= range.max;
 }
 
+// A bound as it is given is in range, although the nearest float may lie beyond it.
+NumberRange as_floats(NumberRange range) {
+  for (double* bound : {&range.min, &range.max}) {
+    if (std::abs(*bound) <= double(std::numeric_limits<float>::max())) *bound = double(float(*bound));
+  }
+  return range;
+}
+
 std::vector<std::string_view> split(std::string_view text) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -70,7 +78,7 @@ float parse_as<float>(std::string_view text, const NumberRange& range) {
   const double value = parse_number(text, range);
   const bool fits = std::abs(value) <= double(std::numeric_limits<float>::max());
   if (!fits) refuse(text, fmt::format("a number of at most {:.1e}", std::numeric_limits<float>::max()));
-  if (!contains(range, double(float(value)))) refuse(text, describe(range));
+  if (!contains(as_floats(range), double(float(value)))) refuse(text, describe(range));
   return float(value);
 }
 

@@ -33,6 +33,9 @@ TEST(CliOptionValues, FloatsStayInRangeAfterRounding) {
   EXPECT_EQ(parse_as<float>("0.5", kPositive), 0.5F);
   EXPECT_THROW(parse_as<float>("1e-300", kPositive), UsageError);
   EXPECT_THROW(parse_as<float>("1e300", kPositive), UsageError);
+  EXPECT_EQ(parse_as<float>("0.01", {.min = 0.01, .max = 0.1}), 0.01F);
+  EXPECT_EQ(parse_as<float>("0.1", {.min = 0.01, .max = 0.1}), 0.1F);
+  EXPECT_THROW(parse_as<float>("0.0099", {.min = 0.01}), UsageError);
 }
 
 TEST(CliOptionValues, CountsAreWholeNumbersInRange) {
