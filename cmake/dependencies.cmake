@@ -11,6 +11,7 @@ endmacro()
 
 require_package(embree libembree-dev 3)
 require_package(OpenImageIO "libopenimageio-dev openimageio-tools")
+require_package(PNG libpng-dev 1.6)
 require_package(OpenEXR libopenexr-dev 3.1)
 require_package(TinyGLTF libtinygltf-dev)
 require_package(Ceres libceres-dev)

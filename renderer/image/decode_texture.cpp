@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
+#include "renderer/image/decode_png.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
 #include "renderer/image/memory_file.h"
@@ -15,17 +16,17 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
-constexpr const char* kAvifName = "texture.avif";
+constexpr std::string_view kPngName = "texture.png", kAvifName = "texture.avif";
 
 // The name of a file of the format that the bytes begin like; empty: none that textures come in.
 std::string file_name_for(std::string_view encoded) {
   const auto begins = [&](std::string_view magic, std::size_t at = 0) {
     return encoded.size() >= at + magic.size() && encoded.substr(at, magic.size()) == magic;
   };
-  if (begins("\x89PNG\r\n\x1a\n")) return "texture.png";
+  if (is_png(encoded)) return std::string(kPngName);
   if (begins("\xff\xd8\xff")) return "texture.jpg";
   if (begins("RIFF") && begins("WEBP", 8)) return "texture.webp";
-  if (begins("ftypavif", 4) || begins("ftypavis", 4)) return kAvifName;
+  if (begins("ftypavif", 4) || begins("ftypavis", 4)) return std::string(kAvifName);
   if (begins("BM")) return "texture.bmp";
   if (begins("DDS ")) return "texture.dds";
   return "";
@@ -40,13 +41,23 @@ std::string reason(const std::string& text) {
   return line.empty() ? "the decoder gives no reason" : line;
 }
 
+// What an image says it has, beside the bytes that it is encoded in.
+struct Size {
+  std::int64_t width, height, depth, channels;
+  std::uintmax_t bytes;
+};
+
+void check_size(const Size& size, std::size_t encoded_bytes, const std::string& label) {
+  if (size.width <= 0 || size.height <= 0 || size.channels <= 0 || size.depth > 1 ||
+      size.width * size.height > kMaxTexels / std::max<std::int64_t>(1, size.channels / 4)) {
+    fail(label, fmt::format("has {} x {} pixels with {} channels", size.width, size.height, size.channels));
+  }
+  if (!may_hold(encoded_bytes, size.bytes)) fail(label, "has more pixels than so few bytes can hold");
+}
+
 std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, std::size_t encoded_bytes, const std::string& label) {
   const OIIO::ImageSpec& spec = input.spec();
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1 ||
-      std::int64_t(spec.width) * spec.height > kMaxTexels / std::max(1, spec.nchannels / 4)) {
-    fail(label, fmt::format("has {} x {} pixels with {} channels", spec.width, spec.height, spec.nchannels));
-  }
-  if (!may_hold(encoded_bytes, spec.image_bytes(true))) fail(label, "has more pixels than so few bytes can hold");
+  check_size({spec.width, spec.height, spec.depth, spec.nchannels, spec.image_bytes(true)}, encoded_bytes, label);
   std::vector<std::uint8_t> texels(std::size_t(spec.width) * spec.height * spec.nchannels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data())) {
     fail(label, fmt::format("cannot be decoded: {}", reason(input.geterror())));
@@ -67,15 +78,32 @@ std::vector<std::uint8_t> rgba_of(const std::vector<std::uint8_t>& texels, int c
   return rgba;
 }
 
+Texture texture_of(std::vector<std::uint8_t> texels, int width, int height, int channels) {
+  Texture texture;
+  texture.width = width;
+  texture.height = height;
+  texture.rgba = channels == 4 ? std::move(texels) : rgba_of(texels, channels);
+  return texture;
+}
+
 Texture decoded_texture(OIIO::ImageInput& input, std::size_t encoded_bytes, const std::string& label) {
   std::vector<std::uint8_t> texels = read_texels(input, encoded_bytes, label);
   const OIIO::ImageSpec& spec = input.spec();
-  Texture texture;
-  texture.name = label;
-  texture.width = spec.width;
-  texture.height = spec.height;
-  texture.rgba = spec.nchannels == 4 ? std::move(texels) : rgba_of(texels, spec.nchannels);
-  return texture;
+  return texture_of(std::move(texels), spec.width, spec.height, spec.nchannels);
+}
+
+std::vector<std::uint8_t> narrowed(const std::vector<std::uint8_t>& samples) {
+  std::vector<std::uint8_t> bytes(samples.size() / 2);
+  OIIO::convert_pixel_values(OIIO::TypeUInt16, samples.data(), OIIO::TypeUInt8, bytes.data(), int(bytes.size()));
+  return bytes;
+}
+
+Texture decode_png_texture(std::string_view encoded, const std::string& label) {
+  const PngHeader header = read_png_header(encoded, label);
+  check_size({header.width, header.height, 1, header.channels, header.bytes()}, encoded.size(), label);
+  std::vector<std::uint8_t> samples = decode_png(encoded, label);
+  if (header.bytes_per_sample == 2) samples = narrowed(samples);
+  return texture_of(std::move(samples), header.width, header.height, header.channels);
 }
 
 // Its reader wants a file.
@@ -90,6 +118,7 @@ Texture decode_avif(std::string_view encoded, const OIIO::ImageSpec& config, con
 }
 
 Texture decode(std::string_view encoded, const std::string& name, const std::string& label) {
+  if (name == kPngName) return decode_png_texture(encoded, label);
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   if (name == kAvifName) return decode_avif(encoded, config, label);
@@ -107,8 +136,10 @@ Texture decode(std::string_view encoded, const std::string& name, const std::str
 Texture decode_texture(std::string_view encoded, const std::string& label) {
   const std::string name = file_name_for(encoded);
   if (name.empty()) fail(label, "is in a format that is not read here");
-  if (const auto damage = find_damage(encoded)) fail(label, *damage);
-  return read_through_library(label, [&] { return decode(encoded, name, label); });
+  if (const auto damage = find_jpeg_damage(encoded)) fail(label, *damage);
+  Texture texture = read_through_library(label, [&] { return decode(encoded, name, label); });
+  texture.name = label;
+  return texture;
 }
 
 }  // namespace chiaro::renderer

@@ -8,9 +8,9 @@
 
 namespace chiaro::renderer {
 
-// What is wrong with a PNG or JPEG whose bytes are not all there or not all right; absent where nothing is, and for
-// other formats. Decoders of both print to standard error, or fill with grey, where this speaks.
-std::optional<std::string> find_damage(std::string_view encoded);
+// What is wrong with a JPEG whose bytes are not all there or not all right; absent where nothing is, and for other
+// formats. Its decoder fills with grey where this speaks.
+std::optional<std::string> find_jpeg_damage(std::string_view encoded);
 
 // Whether a file of `file_bytes` may hold so many bytes of pixels. No picture of any use is packed tighter, but for
 // those that memory has room for anyway.

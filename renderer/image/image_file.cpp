@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <initializer_list>
 #include <limits>
 
@@ -14,6 +15,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/image/decode_png.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/exr_header.h"
 #include "renderer/image/read_through_library.h"
@@ -70,20 +72,44 @@ bool has_extension(const std::filesystem::path& path, std::initializer_list<std:
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
-std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
+// Empty: it is none.
+std::string bytes_if_png(const std::filesystem::path& path) {
+  std::string first(8, 0);
+  std::ifstream(path, std::ios::binary).read(first.data(), std::streamsize(first.size()));
+  return is_png(first) ? read_file(path) : "";
+}
+
+struct OpenImage {
+  std::string png;  // all of its bytes, where it is one
+  PngHeader header{};
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> reader{};
+  std::unique_ptr<OIIO::ImageInput> input{};
+};
+
+// A PNG's header is known to be right before OpenImageIO sees it, and so are the bytes.
+OpenImage open(const std::filesystem::path& path) {
   require_file(path, "an image");
-  if (has_extension(path, {".png", ".jpg", ".jpeg"})) {
-    if (const auto damage = find_damage(read_file(path))) throw Error({path.string(), "", *damage, "a whole image"});
+  OpenImage image{bytes_if_png(path)};
+  if (!image.png.empty()) {
+    image.header = read_png_header(image.png, path.string());
+    image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.png.data(), image.png.size());
+  } else if (has_extension(path, {".jpg", ".jpeg"})) {
+    if (const auto damage = find_jpeg_damage(read_file(path))) {
+      throw Error({path.string(), "", *damage, "a whole image"});
+    }
   }
   if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole image"});
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
-  auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) {
+  if (OIIO::Filesystem::IOProxy* reader = image.reader.get()) {
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &reader);  // its reader of PNG looks here alone
+  }
+  image.input = OIIO::ImageInput::open(image.reader ? "image.png" : path.string(), &config, image.reader.get());
+  if (!image.input) {
     const std::string reason = first_line(OIIO::geterror());
     throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), ""});
   }
-  return input;
+  return image;
 }
 
 void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
@@ -199,25 +225,37 @@ void write_through_memory(const Image& image, const std::filesystem::path& path,
   });
 }
 
+void read_png_pixels(const OpenImage& open, const std::string& file, Image& image) {
+  const std::vector<std::uint8_t> samples = decode_png(open.png, file);
+  const bool wide = open.header.bytes_per_sample == 2;
+  CHIARO_CHECK(samples.size() == image.pixels.size() * (wide ? 2 : 1));
+  OIIO::convert_image(image.channel_count(), image.width, image.height, 1, samples.data(),
+                      wide ? OIIO::TypeUInt16 : OIIO::TypeUInt8, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride,
+                      image.pixels.data(), OIIO::TypeFloat, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
+}
+
+void read_pixels(OpenImage& open, const std::string& file, Image& image) {
+  if (!open.png.empty()) return read_png_pixels(open, file, image);
+  if (open.input->read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) return;
+  throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(open.input->geterror())), "a whole file"});
+}
+
 ImageFile read_image(const std::filesystem::path& path) {
-  const auto input = open(path);
-  ImageFile file = header_of(*input, path);
-  if (!may_hold(std::filesystem::file_size(path), input->spec().image_bytes(true))) {
+  OpenImage opened = open(path);
+  ImageFile file = header_of(*opened.input, path);
+  if (!may_hold(std::filesystem::file_size(path), opened.input->spec().image_bytes(true))) {
     throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
   }
   Image& image = file.image;
   image = make_image(image.width, image.height, std::move(image.channel_names));
-  if (!input->read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) {
-    throw Error(
-        {path.string(), "pixels", fmt::format("cannot be read: {}", first_line(input->geterror())), "a whole file"});
-  }
+  read_pixels(opened, path.string(), image);
   return file;
 }
 
 }  // namespace
 
 ImageFile load_image_header(const std::filesystem::path& path) {
-  return read_through_library(path.string(), [&] { return header_of(*open(path), path); });
+  return read_through_library(path.string(), [&] { return header_of(*open(path).input, path); });
 }
 
 ImageFile load_image(const std::filesystem::path& path) {

@@ -13,7 +13,7 @@ ALLOWED["inverse/transport"] = set(RENDERER) | {"inverse/numerics"}
 ALLOWED["inverse/target"] = ALLOWED["inverse/transport"] | {"inverse/transport"}
 ALLOWED["inverse/solve"] = ALLOWED["inverse/target"] | {"inverse/target"}
 ALLOWED["cli"] = set(ALLOWED)
-THIRD_PARTY = re.compile(r'#include [<"](embree|tiny_gltf|OpenImageIO|OpenEXR|Imf|Imath|OpenColorIO|ceres|tbb)')
+THIRD_PARTY = re.compile(r'#include [<"](embree|tiny_gltf|OpenImageIO|png\.h|OpenEXR|Imf|Imath|OpenColorIO|ceres|tbb)')
 INCLUDE = re.compile(r'#include "((?:renderer|inverse|cli)/[^"]+)"')
 
 

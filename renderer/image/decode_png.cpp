@@ -1,0 +1,124 @@
+#include "renderer/image/decode_png.h"
+
+#include <algorithm>
+#include <bit>
+#include <csetjmp>
+#include <cstring>
+#include <new>
+
+#include <png.h>
+
+#include "renderer/core/error.h"
+
+namespace chiaro::renderer {
+namespace {
+
+constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+
+// What libpng's callbacks reach. They leave by longjmp(), which passes over nothing that has a destructor.
+struct Reading {
+  std::string_view left;
+  bool truncated = false;
+  char problem[128] = "";
+  std::vector<png_bytep> rows{};
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+};
+
+void keep_problem(png_structp png, png_const_charp message) {
+  char* const problem = static_cast<Reading*>(png_get_error_ptr(png))->problem;
+  std::strncpy(problem, message, sizeof Reading::problem - 1);
+  png_longjmp(png, 1);
+}
+
+void ignore_warning(png_structp, png_const_charp) {}
+
+void read_bytes(png_structp png, png_bytep to, png_size_t count) {
+  auto& reading = *static_cast<Reading*>(png_get_io_ptr(png));
+  if (count > reading.left.size()) {
+    reading.truncated = true;
+    png_error(png, "truncated");
+  }
+  std::copy_n(reading.left.data(), count, to);
+  reading.left.remove_prefix(count);
+}
+
+// Samples become whole bytes, and what is transparent is in a channel.
+void read_header(Reading& reading) {
+  png_set_crc_action(reading.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+  png_read_info(reading.png, reading.info);
+  png_set_expand(reading.png);
+  if constexpr (std::endian::native == std::endian::little) png_set_swap(reading.png);
+  png_set_interlace_handling(reading.png);
+  png_read_update_info(reading.png, reading.info);
+}
+
+void read_rows(Reading& reading) {
+  png_read_image(reading.png, reading.rows.data());
+  png_read_end(reading.png, nullptr);
+}
+
+bool succeeds(void (*read)(Reading&), Reading& reading) {
+  if (setjmp(png_jmpbuf(reading.png)) != 0) return false;
+  read(reading);
+  return true;
+}
+
+class PngReader {
+ public:
+  PngReader(std::string_view encoded, const std::string& file) : file_(file) {
+    reading_.left = encoded;
+    reading_.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reading_, keep_problem, ignore_warning);
+    reading_.info = reading_.png != nullptr ? png_create_info_struct(reading_.png) : nullptr;
+    if (reading_.info == nullptr) {
+      png_destroy_read_struct(&reading_.png, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
+    png_set_read_fn(reading_.png, &reading_, read_bytes);
+  }
+  ~PngReader() { png_destroy_read_struct(&reading_.png, &reading_.info, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+
+  PngHeader header() {
+    run(read_header);
+    return {int(png_get_image_width(reading_.png, reading_.info)),
+            int(png_get_image_height(reading_.png, reading_.info)), png_get_channels(reading_.png, reading_.info),
+            png_get_bit_depth(reading_.png, reading_.info) / 8};
+  }
+
+  // After the header.
+  std::vector<std::uint8_t> samples(const PngHeader& header) {
+    std::vector<std::uint8_t> samples(header.bytes());
+    const std::size_t row = samples.size() / std::size_t(header.height);
+    for (int y = 0; y < header.height; ++y) reading_.rows.push_back(&samples[std::size_t(y) * row]);
+    run(read_rows);
+    return samples;
+  }
+
+ private:
+  void run(void (*read)(Reading&)) {
+    if (succeeds(read, reading_)) return;
+    const std::string problem = reading_.problem;
+    if (problem == "Out of memory") throw std::bad_alloc();
+    throw Error({file_, "", reading_.truncated ? "is truncated" : "is corrupt: " + problem, "a whole PNG"});
+  }
+
+  const std::string& file_;
+  Reading reading_;
+};
+
+}  // namespace
+
+bool is_png(std::string_view encoded) { return encoded.starts_with(kSignature); }
+
+PngHeader read_png_header(std::string_view encoded, const std::string& file) {
+  return PngReader(encoded, file).header();
+}
+
+std::vector<std::uint8_t> decode_png(std::string_view encoded, const std::string& file) {
+  PngReader reader(encoded, file);
+  return reader.samples(reader.header());
+}
+
+}  // namespace chiaro::renderer
