@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/session.h"
+#include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "renderer/image/image_file.h"
 
@@ -33,7 +33,7 @@ struct CompareCommand {
 bool is_target(const std::string& file) { return has_extension(file, {".glb", ".gltf"}); }
 
 int limit_exceeded(const std::string& what, const std::string& reason, double limit) {
-  std::fprintf(stderr, "chiaro: limit exceeded: %s: %s (at most %g)\n", what.c_str(), reason.c_str(), limit);
+  print_message(fmt::format("limit exceeded: {}: {} (at most {:g})", what, reason, limit));
   return kLimitExceeded;
 }
 

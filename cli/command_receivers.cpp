@@ -8,6 +8,7 @@
 #include "cli/program.h"
 #include "cli/scene_options.h"
 #include "cli/session.h"
+#include "cli/text_output.h"
 #include "cli/transport_options.h"
 #include "inverse/transport/receivers.h"
 #include "renderer/io/load_gltf.h"
@@ -28,8 +29,9 @@ void print_summary(Session& session, const ReceiversCommand& options, const inve
                            {"triangles", receivers.triangles.size()},
                            {"parts", receivers.parts.size()},
                            {"fingerprint", inverse::fingerprint(receivers)}};
-  session.finish(summary, fmt::format("{}: {} receivers, {} triangles, {} parts\n", options.output, receivers.size(),
-                                      receivers.triangles.size(), receivers.parts.size()));
+  session.finish(summary, one_line(fmt::format("{}: {} receivers, {} triangles, {} parts", options.output,
+                                               receivers.size(), receivers.triangles.size(), receivers.parts.size())) +
+                              "\n");
 }
 
 int run_receivers(const ReceiversCommand& options) {

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -72,7 +71,7 @@ void print_summary(Session& session, const RenderCommand& options, const rendere
 
 // In one line, as every command that is interrupted.
 int interrupted_with(const std::string& output) {
-  std::fprintf(stderr, "chiaro: interrupted: %s has the samples so far\n", output.c_str());
+  print_message(fmt::format("interrupted: {} has the samples so far", output));
   return kInterrupted;
 }
 

@@ -8,6 +8,7 @@
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/solve_options.h"
+#include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "inverse/solve/error_curve_file.h"
 #include "inverse/solve/report.h"
@@ -43,7 +44,7 @@ void print_summary(Session& session, const SolveCommand& options, const WantedTa
   JsonObject summary = solve_summary(result);
   summary.insert(summary.end(), wanted.pictures.begin(), wanted.pictures.end());
   const std::string written =
-      fmt::format("  written  {}, {}\n", options.output, beside(options.output, ".json").string());
+      aligned_rows({{"written", fmt::format("{}, {}", options.output, beside(options.output, ".json").string())}});
   session.finish(summary, wanted.text + solve_text(result) + written);
 }
 

@@ -125,7 +125,7 @@ std::string surface_table(const inverse::TargetComparison& comparison) {
   if (comparison.surfaces.size() < 2 || comparison.surfaces.size() > kMostRows) return "";
   std::vector<Row> rows{{"surface", "relative L2", "RMSE", "largest"}};
   for (const inverse::SurfaceComparison& f : comparison.surfaces) {
-    rows.push_back({one_line(f.name), text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
+    rows.push_back({f.name, text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
                     fmt::format("{:.4g}", f.max_difference)});
   }
   return "\n" + table(rows);

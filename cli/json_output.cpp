@@ -7,11 +7,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/terminal_text.h"
+
 namespace chiaro::cli {
 namespace {
 
+// What terminals obey is escaped, whether or not JSON asks for it.
 std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return without_controls(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+                          [](char32_t control) { return fmt::format("\\u{:04x}", std::uint32_t(control)); });
 }
 
 std::string indentation(int level) { return "\n" + std::string(std::size_t(2 * level), ' '); }

@@ -1,8 +1,7 @@
 #include "cli/program.h"
 
-#include <cstdio>
-#include <iostream>
 #include <new>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,13 +58,13 @@ int run_parsed_command(const AddedCommands& commands) {
 int fail_usage(const CLI::App& program, const std::string& message) {
   const auto selected = program.get_subcommands();
   const std::string command = selected.empty() ? "" : " " + selected.front()->get_name();
-  std::fprintf(stderr, "chiaro: usage: %s\nchiaro: see 'chiaro%s --help'\n", one_line(message).c_str(),
-               command.c_str());
+  print_message("usage: " + message);
+  print_message("see 'chiaro" + command + " --help'");
   return kWrongUsage;
 }
 
 int fail(const std::string& message) {
-  std::fprintf(stderr, "chiaro: error: %s\n", one_line(message).c_str());
+  print_message("error: " + message);
   return kFailed;
 }
 
@@ -74,9 +73,10 @@ int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, co
     program.parse(argc, argv);
     return run_parsed_command(commands);
   } catch (const CLI::Success& help_or_version) {
-    const int code = program.exit(help_or_version);
-    std::cout.flush();
-    return std::cout ? code : fail("standard output: cannot be written");
+    std::ostringstream text;
+    const int code = program.exit(help_or_version, text, text);
+    print(text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return fail_usage(program, error.what());
   } catch (const UsageError& error) {
@@ -96,7 +96,7 @@ int run_program(int argc, const char* const* argv) {
     const AddedCommands commands = add_commands(program);
     return parse_and_run(program, commands, argc, argv);
   } catch (const renderer::Interruption& interruption) {
-    std::fprintf(stderr, "chiaro: %s\n", one_line(interruption.what()).c_str());
+    print_message(interruption.what());
     return kInterrupted;
   } catch (const std::bad_alloc&) {
     return fail("out of memory");

@@ -1,7 +1,5 @@
 #include "cli/session.h"
 
-#include <cstdio>
-
 #include "cli/interruption.h"
 #include "cli/output_paths.h"
 #include "cli/text_output.h"
@@ -54,7 +52,7 @@ double Session::seconds() const { return renderer::seconds_since(start_); }
 void Session::print_warnings() {
   progress_.clear();
   if (options_.quiet) return;
-  for (const std::string& warning : warnings_) std::fprintf(stderr, "chiaro: warning: %s\n", one_line(warning).c_str());
+  for (const std::string& warning : warnings_) print_message("warning: " + warning);
 }
 
 void Session::finish(const Json& summary, const std::string& text) {

@@ -1,7 +1,6 @@
 #include "cli/text_output.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/json_output.h"
+#include "cli/terminal_text.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -67,17 +67,19 @@ std::string text_of_bytes(double bytes) {
 }
 
 std::string one_line(const std::string& text) {
-  std::string line = valid_utf8(text);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  std::string line = without_controls(valid_utf8(text), [](char32_t) { return " "; });
   while (!line.empty() && line.back() == ' ') line.pop_back();
   return line;
 }
 
 void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  const std::string shown =
+      without_controls(valid_utf8(text), [](char32_t control) { return control == U'\n' ? "\n" : " "; });
+  if (std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size() && std::fflush(stdout) == 0) return;
   if (errno == EINTR) throw renderer::Interruption();
   throw renderer::Error({"standard output", "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
 }
+
+void print_message(const std::string& text) { std::fprintf(stderr, "chiaro: %s\n", one_line(text).c_str()); }
 
 }  // namespace chiaro::cli

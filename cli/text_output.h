@@ -23,11 +23,14 @@ std::string text_of_seconds(double seconds);                  // "0.31 s", "4 mi
 std::string text_of_percent(std::optional<double> fraction);  // "4.12 %", "not known"
 std::string text_of_bytes(double bytes);                      // "1.2 GB"
 
-// The same in one line, as terminals and programs can take it, whatever names of files are in it: line ends and other
-// control characters become spaces, bytes that are no UTF-8 the replacement character.
+// The same in one line, as terminals and programs can take it, whatever names of files are in it: line ends and what
+// else terminals obey (terminal_text.h) become spaces, bytes that are no UTF-8 the replacement character.
 std::string one_line(const std::string& text);
 
-// Error when standard output does not take it.
+// All that goes to standard output goes through here, line ends alone as they are. Error when it does not take it.
 void print(const std::string& text);
+
+// All that goes to standard error, but for the progress bar: "chiaro: " and the text, in one line.
+void print_message(const std::string& text);
 
 }  // namespace chiaro::cli

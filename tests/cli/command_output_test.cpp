@@ -1,5 +1,7 @@
 // What commands print, and under which names.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -150,6 +152,41 @@ TEST(CliInspect, QuietSaysByItsExitAloneWhetherAFileIsGood) {
   const Outcome good = run_with({"inspect", kScenes + "cornell.glb", "--quiet"});
   EXPECT_EQ(good.exit_code, kDone);
   EXPECT_EQ(good.standard_output + good.standard_error, "");
+}
+
+// ESC, BEL, a line end and a control character of two bytes.
+const std::string kUnruly =
+    "a\x1b[31m\a\nb\xc2\x9b"
+    "1m";
+
+bool holds_controls(const std::string& text) { return text.find_first_of("\x1b\a\x9b") != std::string::npos; }
+
+TEST(CliReceivers, ItsNameCannotSpeakToTheTerminal) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_with({"receivers", kScenes + "cornell.glb", "-o", folder / (kUnruly + ".glb")});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+  EXPECT_FALSE(holds_controls(outcome.standard_output)) << outcome.standard_output;
+  EXPECT_EQ(std::count(outcome.standard_output.begin(), outcome.standard_output.end(), '\n'), 1);
+}
+
+TEST(CliCompare, NamesOfALimitCannotSpeakToTheTerminal) {
+  const TemporaryFolder folder;
+  const std::string a = grey_frame(folder, kUnruly + ".exr", 1), b = grey_frame(folder, "b.exr", 2);
+  for (const std::string region : {"", "x=0,0,4,4", "\x1b[2J\n=0,0,4,4"}) {
+    std::vector<std::string> arguments{"compare", a, b, "--quiet", "--fail-above", "0.1"};
+    if (!region.empty()) arguments.insert(arguments.end(), {"--crop", region});
+    const Outcome outcome = run_with(arguments);
+    ASSERT_EQ(outcome.exit_code, kLimitExceeded) << outcome.standard_error;
+    EXPECT_FALSE(holds_controls(outcome.standard_error)) << outcome.standard_error;
+    EXPECT_EQ(std::count(outcome.standard_error.begin(), outcome.standard_error.end(), '\n'), 1);
+  }
+}
+
+TEST(CliRender, NamesThatAreNotFoundCannotSpeakToTheTerminal) {
+  const TemporaryFolder folder;
+  const Outcome outcome = render_preview(folder, {"--camera", kUnruly});
+  EXPECT_EQ(outcome.exit_code, kFailed);
+  EXPECT_FALSE(holds_controls(outcome.standard_error)) << outcome.standard_error;
 }
 
 const ForeignNode kColoured{"floor", {{"COLOR_0", {0.5F, 0, 0, 0.5F, 0, 0, 0.5F, 0.75F, 0}}}};

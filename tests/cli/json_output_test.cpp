@@ -47,6 +47,14 @@ TEST(CliJsonOutput, InvalidUtf8DoesNotThrow) {
   EXPECT_TRUE(nlohmann::json::parse(json_text(Json(std::string("a\xff")))).is_string());
 }
 
+// JSON asks for ASCII's control characters alone to be escaped.
+TEST(CliJsonOutput, TerminalsObeyNothingInIt) {
+  const std::string name = "a\x1b\x7f\xc2\x9b\xe2\x80\xae z";
+  const std::string text = json_text(Json(name));
+  EXPECT_EQ(text, "\"a\\u001b\\u007f\\u009b\\u202e z\"\n");
+  EXPECT_EQ(nlohmann::json::parse(text).get<std::string>(), name);
+}
+
 TEST(CliJsonOutput, SecondsAreTakenOutAtAnyDepth) {
   const JsonObject object{{"seconds", 1.5},
                           {"stages", JsonList{JsonObject{{"name", "nnls"}, {"seconds", JsonObject{{"total", 2}}}}}}};

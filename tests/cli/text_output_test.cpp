@@ -40,6 +40,27 @@ TEST(CliTextOutput, NamesCannotSpeakToTheTerminal) {
   EXPECT_EQ(aligned_rows({{"light", "a\x1b[2J\nb"}}), "  light  a [2J b\n");
 }
 
+// C1 is two bytes each, neither of which is a control character by itself; an override shows what follows backwards.
+TEST(CliTextOutput, ControlsBeyondAsciiAreNoneTheLess) {
+  EXPECT_EQ(one_line("x\xc2\x9b"
+                     "31m"),
+            "x 31m");
+  EXPECT_EQ(one_line("a\xc2\x80\xc2\x9f\x7fz"), "a   z");
+  EXPECT_EQ(one_line("a\xe2\x80\xa8\xe2\x80\xa9z"), "a  z") << "separators of lines and paragraphs";
+  EXPECT_EQ(one_line("a\xe2\x80\xae\xe2\x81\xa6z"), "a  z") << "directions";
+  const std::string harmless = "\xc2\xa0\xc3\x9b\xe2\x80\xa7\xe2\x80\xaf\xe2\x81\xa5\xe2\x98\x83\xf0\x9f\x92\xa1";
+  EXPECT_EQ(one_line(harmless), harmless);
+}
+
+TEST(CliTextOutput, WhatIsPrintedKeepsItsLinesAlone) {
+  testing::internal::CaptureStdout();
+  print("  a\x1b[31m\n  b\xc2\x9bm\xff\n");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "  a [31m\n  b m\xef\xbf\xbd\n");
+  testing::internal::CaptureStderr();
+  print_message("error: a\nb\x07.glb");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "chiaro: error: a b .glb\n");
+}
+
 TEST(CliProgress, LineShowsStageAndPercent) {
   EXPECT_EQ(progress_line("bake", 0.5, 0, 80), "bake [############............]  50 %");
 }
