@@ -144,10 +144,10 @@ bool cross_shadow_edges(const renderer::RayTracer& tracer, const SettlingBench& 
   for (LightEstimate& light : lights) {
     const double worth_it = kWorthIt * std::pow(bench.norm(residual), 2);
     MovingLight moving(tracer, bench, light, residual);
-    if (moving.seemingly_wrong() < worth_it) continue;
+    if (moving.seemingly_wrong() <= worth_it) continue;
     moving.sum_up_others();
     const Vector3d place = look_around(moving, bench.response, light.position);
-    if (moving.squared_error_at(light.position) - moving.squared_error_at(place) < worth_it) continue;
+    if (moving.squared_error_at(light.position) - moving.squared_error_at(place) <= worth_it) continue;
     const Column change = bench.response.direct(place) - bench.response.direct(light.position);
     residual += change * light.intensity.matrix().asDiagonal();
     light.position = place;

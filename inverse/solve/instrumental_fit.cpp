@@ -45,6 +45,13 @@ Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Colum
   return observations.sqrt_weight.array() / (1 + (relative / scale).square());
 }
 
+// The weights, squared, that intensities are fitted with. Noise is not symmetric: its fireflies are part of its mean,
+// and without them light would be too dark. Where noise is not known, so far out they may be anything.
+Eigen::VectorXd weight_of_intensities(const Observations& observations, const Column& residual) {
+  const bool is_noise_known = observations.noise > 0;
+  return (is_noise_known ? observations.sqrt_weight : robust_sqrt_weight(observations, residual, kFirefly)).cwiseAbs2();
+}
+
 // How direct light, which is grey, changes with each light's x, y, z, then with its intensity; weighted.
 Eigen::MatrixXd instruments_of(const std::vector<ColumnWithGradient>& direct, const Eigen::VectorXd& sqrt_weight) {
   const auto n = Eigen::Index(direct.size());
@@ -197,7 +204,7 @@ void fit_intensities_with_instruments(const LightResponse& response, const Obser
   for (std::size_t j = 0; j < lights.size(); ++j) all[j] += indirect[j];
   const Eigen::Index receivers = observations.wanted.rows(), n = Eigen::Index(lights.size());
   const Column left = total_illumination(all, lights, receivers) - observations.wanted;
-  const Eigen::VectorXd weight = robust_sqrt_weight(observations, left, kFirefly).cwiseAbs2();
+  const Eigen::VectorXd weight = weight_of_intensities(observations, left);
   for (int c = 0; c < 3; ++c) {
     Eigen::MatrixXd normal(n, n);
     Eigen::VectorXd wanted(n);
@@ -218,7 +225,7 @@ LightIntervals intervals_with_instruments(const LightResponse& response, const O
   const Column residual = residual_of(observations, columns, indirect, lights);
   const Derivatives instruments = derivatives_of(columns, lights);
   for (std::size_t j = 0; j < lights.size(); ++j) columns[j].value += indirect[j];
-  const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kFirefly).cwiseAbs2();
+  const Eigen::VectorXd weight = weight_of_intensities(observations, residual);
   return light_intervals({derivatives_of(columns, lights), instruments, residual, weight}, lights);
 }
 

@@ -54,10 +54,12 @@ class PaintedCorner {
   Receivers receivers_;
 };
 
-// Some receivers of the corner, direct light only, and what is wanted there.
+// Some receivers of the corner or of another scene, direct light only, and what is wanted there.
 class DirectProblem {
  public:
-  explicit DirectProblem(const LightEstimates& lights, std::size_t count = 250) {
+  explicit DirectProblem(const LightEstimates& lights, std::size_t count = 250,
+                         renderer::Scene scene = test::corner_with_ball())
+      : corner_(0.2F, std::move(scene)) {
     const Receivers& all = corner_.receivers();
     const Receivers some = select_receivers(all, evenly_spread(all.size(), count));
     samples_ = some.samples;

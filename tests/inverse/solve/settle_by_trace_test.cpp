@@ -120,10 +120,12 @@ TEST_F(SettleByTrace, ALightThatStoodForTwoParts) {
   const Target target = corner_.target(known, -1);
   const LightsByTrace settled = settle(target, {known[0], whole});
   ASSERT_EQ(settled.lights.size(), 3U);
-  // Where they come to from the truth: so near each other noise leaves them less precise than others.
+  // So near each other noise leaves them less precise than others, by some 0.02 m: also where they come to from the
+  // truth.
   const LightsByTrace from_truth = settle(target, known);
-  EXPECT_LT(farthest_from(from_truth.lights, positions_of(settled.lights)), kPrecise);
+  EXPECT_LT(farthest_from(from_truth.lights, positions_of(settled.lights)), 2 * kPrecise);
   EXPECT_LT(farthest_from(known, positions_of(from_truth.lights)), 0.05);
+  EXPECT_LT(farthest_from(known, positions_of(settled.lights)), 0.05);
   SolveOptions two;
   two.max_lights = 2;
   EXPECT_EQ(settle(target, {known[0], whole}, two).lights.size(), 2U);
