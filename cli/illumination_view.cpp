@@ -91,7 +91,7 @@ void save_illumination_picture(const IlluminationPictureOptions& options, const 
   const auto [width, height] = frame_size(camera, options.size);
   const Image picture = inverse::illumination_picture(tracer, target, {camera, width, height}, session.control());
   if (is_exr(options.file)) {
-    renderer::save_image(picture, options.file, renderer::PixelType::kHalf);
+    renderer::save_image(picture, options.file, renderer::PixelType::kFloat);
   } else {
     renderer::save_image(displayed_illumination(picture, options.view), options.file, renderer::PixelType::kUint8);
   }

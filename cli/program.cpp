@@ -1,6 +1,5 @@
 #include "cli/program.h"
 
-#include <new>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -10,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/interruption.h"
+#include "cli/exhaustion.h"
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
@@ -88,7 +87,6 @@ int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, co
 
 int run_program(int argc, const char* const* argv) {
   try {
-    install_signal_handlers();
     CLI::App program("chiaro finds the lights that make a 3D scene look the way somebody painted it.", "chiaro");
     program.require_subcommand(1);
     program.set_version_flag("--version", "chiaro " + program_version());
@@ -98,10 +96,9 @@ int run_program(int argc, const char* const* argv) {
   } catch (const renderer::Interruption& interruption) {
     print_message(interruption.what());
     return kInterrupted;
-  } catch (const std::bad_alloc&) {
-    return fail("out of memory");
   } catch (const std::exception& error) {
-    return fail(error.what());
+    const char* exhausted = what_ran_out();
+    return fail(exhausted != nullptr ? exhausted : error.what());
   }
 }
 

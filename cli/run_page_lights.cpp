@@ -4,6 +4,7 @@
 
 #include "cli/html.h"
 #include "cli/run_page.h"
+#include "cli/text_output.h"
 #include "renderer/core/color_temperature.h"
 #include "renderer/image/srgb_curve.h"
 #include "renderer/scene/luminous_flux.h"
@@ -67,8 +68,7 @@ std::string cell(const char* label, const std::string& html) {
 
 std::string small(const std::string& text) { return text.empty() ? "" : "<small>" + html_escaped(text) + "</small>"; }
 
-// The widest of the half widths.
-std::string interval(Vec3f half) { return max_component(half) > 0 ? fmt::format("± {:.2g}", max_component(half)) : ""; }
+std::string interval(Vec3f half) { return max_component(half) > 0 ? "± " + text_of_interval(half) : ""; }
 
 struct LightRow {
   std::string number, contribution, position_interval, intensity_interval;

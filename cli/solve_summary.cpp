@@ -85,9 +85,6 @@ std::string text_of_curve(const std::vector<inverse::LightSet>& curve) {
   return fmt::format("{}", fmt::join(points, ", "));
 }
 
-// The widest of three half widths.
-std::string text_of_interval(renderer::Vec3f half) { return fmt::format("{:.2g}", max_component(half)); }
-
 using PlaceAndBrightness = std::pair<std::string, std::string>;
 PlaceAndBrightness place_and_brightness(const renderer::DirectionalLight& light) {
   return {"from afar", text_of_vector(light.illuminance) + " lx"};

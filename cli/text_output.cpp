@@ -66,6 +66,11 @@ std::string text_of_bytes(double bytes) {
   return fmt::format("{:.4g} {}", bytes, units[unit]);
 }
 
+std::string text_of_interval(renderer::Vec3f half) {
+  const float widest = max_component(half);
+  return std::isfinite(widest) ? fmt::format("{:.2g}", widest) : "not known";
+}
+
 std::string one_line(const std::string& text) {
   std::string line = without_controls(valid_utf8(text), [](char32_t) { return " "; });
   while (!line.empty() && line.back() == ' ') line.pop_back();

@@ -22,6 +22,7 @@ std::string text_of_vector(renderer::Vec3f v);                // "1.25 0 -3"
 std::string text_of_seconds(double seconds);                  // "0.31 s", "4 min 05 s"
 std::string text_of_percent(std::optional<double> fraction);  // "4.12 %", "not known"
 std::string text_of_bytes(double bytes);                      // "1.2 GB"
+std::string text_of_interval(renderer::Vec3f half);           // the widest of three half widths: "0.012", "not known"
 
 // The same in one line, as terminals and programs can take it, whatever names of files are in it: line ends and what
 // else terminals obey (terminal_text.h) become spaces, bytes that are no UTF-8 the replacement character.

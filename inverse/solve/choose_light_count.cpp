@@ -79,7 +79,7 @@ class Search {
   int most_searched() const { return std::max(most_lights(), std::min(2 * most_lights() + 2, kMany)); }
 
   bool out_of_time() {
-    out_of_time_ = out_of_time_ || (options_.time_limit > 0 && renderer::seconds_since(start_) > options_.time_limit);
+    out_of_time_ = out_of_time_ || renderer::seconds_since(start_) > options_.seconds_left;
     return out_of_time_;
   }
 

@@ -2,6 +2,7 @@
 // How many lights, and which: the error of the best found set of every size, and the smallest size that explains the
 // target.
 
+#include <limits>
 #include <vector>
 
 #include "inverse/solve/exact_indirect.h"
@@ -13,9 +14,9 @@ namespace chiaro::inverse {
 
 struct LightCountOptions {
   int max_lights = 32;
-  int exact_lights = 0;                   // 0: chosen here; fewer where all of them would not shine
-  double time_limit = 0;                  // seconds; 0: none
-  double transport_error = 0;             // of interpolated indirect light, relative
+  int exact_lights = 0;  // 0: chosen here; fewer where all of them would not shine
+  double seconds_left = std::numeric_limits<double>::infinity();  // some light is found even without any
+  double transport_error = 0;                                     // of interpolated indirect light, relative
   const ExactIndirect* exact = nullptr;   // sets are judged by it; absent: by interpolated light alone
   const HeldOut* held_out = nullptr;      // tell how many lights there are; absent: the error of the fit does
   std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for

@@ -132,13 +132,13 @@ std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::v
 }
 
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
-  StageClock clock;
+  StageClock clock(options.time_limit);
   SolveResult result;
   check_lights_in_place(problem);
   const auto [samples, observations] = observe_many(problem, options, control);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
   const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);
-  result.cache_seconds = clock.finish("traced_lights", {{"lights", double(columns.size())}});
+  result.cache_seconds = clock.finish_transport("traced_lights", {{"lights", double(columns.size())}});
   const IntensityFit fit = fit_intensities(observations, columns);
   result.relative_l2_cached = error_of(observations, columns, fit.intensity);
   result.optimal_seconds =
@@ -155,8 +155,8 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.lights = lit(problem.lights_in_place, observations, columns, fit.intensity);
   result.target_noise = target_noise(problem.target);
   result.important_vertices = int(observations.wanted.rows());
-  result.termination = "all lights stay where they are";
-  FreshTrace traced = trace_for_verification(problem, found_lights(result), options, control);
+  FreshTrace traced = trace_for_verification(problem, found_lights(result), options, control, clock);
+  result.termination = traced.cut_short || clock.out_of_time() ? kTimeLimit : "all lights stay where they are";
   const int fresh_samples = traced.samples;
   judge(problem, options, std::move(traced), result);
   clock.finish("verification", {{"samples", double(fresh_samples)},

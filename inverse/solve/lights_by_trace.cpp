@@ -34,8 +34,8 @@ StageFigures verification_figures(const FreshTrace& traced) {
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                            const LightEstimates& lights, StageClock& clock, std::optional<FreshTrace> first_part) {
   const renderer::Lights all = point_lights(lights);
-  LightsByTrace by_trace{lights, first_part ? completed(problem, all, std::move(*first_part), options, control)
-                                            : trace_for_verification(problem, all, options, control)};
+  LightsByTrace by_trace{lights, first_part ? completed(problem, all, std::move(*first_part), options, control, clock)
+                                            : trace_for_verification(problem, all, options, control, clock)};
   clock.finish("verification", verification_figures(by_trace.traced));
   return by_trace;
 }

@@ -139,16 +139,12 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.cut = cut.nodes;
   remaining.rules = search.problem.intensities;
 
-  const LightCountOptions count_options{options.max_lights - already,
-                                        std::max(0, options.exact_lights - already),
-                                        options.time_limit,
-                                        search.transport_error,
-                                        &search.exact,
-                                        search.held_out,
-                                        earlier_sets(options)};
   const auto find_the_rest = [&] {
     if (already >= most_lights(options)) return LightCountResult{};
-    return choose_light_count(response, remaining, tree, count_options);
+    return choose_light_count(
+        response, remaining, tree,
+        {options.max_lights - already, std::max(0, options.exact_lights - already), clock.seconds_left(),
+         search.transport_error, &search.exact, search.held_out, earlier_sets(options)});
   };
   LightCountResult count = find_the_rest();
   if (already > 0) {
@@ -171,7 +167,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.error = polished.error;
   found.noise = last.noise;
   found.sets = std::move(count.sets);
-  found.out_of_time = count.out_of_time;
+  found.out_of_time = count.out_of_time || clock.out_of_time();
   return found;
 }
 
@@ -195,7 +191,7 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
       options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
   return {std::move(lights),
           found.start,
-          found.out_of_time          ? "time limit"
+          found.out_of_time          ? kTimeLimit
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more",
           found.cut,

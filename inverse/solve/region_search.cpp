@@ -101,8 +101,9 @@ RegionSearch::RegionSearch(const SearchBasis& basis_, const SolveProblem& proble
       transport(prepare_transport(problem, basis.importance.chosen, basis.control)),
       response(problem.tracer, basis.samples, transport.cache, allowed_places(problem, transport.cache.grid)) {
   if (response.grid_lights_near_places().empty()) no_place(problem);
-  cache_seconds = clock.finish("cache", {{"lights", double(transport.cache.grid.positions.size())},
-                                         {"indirect_relative_error", transport.cache.indirect_relative_error}});
+  cache_seconds =
+      clock.finish_transport("cache", {{"lights", double(transport.cache.grid.positions.size())},
+                                       {"indirect_relative_error", transport.cache.indirect_relative_error}});
   reported = is_joint(basis) ? standing_for_all(basis.published) : basis.published;
   judged = is_joint(basis) ? weighted_by_objective(reported, basis.options.objective) : basis.published;
   judged.rules = problem.intensities;
@@ -126,8 +127,8 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* smaller, StageClock&
   const TransportCache& cache = transport.cache;
   exact_ = smaller != nullptr ? smaller->exact_
                               : std::make_shared<const ExactIndirect>(problem.tracer, basis.samples, cache.settings);
-  clock.finish("exact_indirect", {});
-  if (basis.options.earlier.empty() && !ties_lights_together(problem)) {
+  clock.finish_transport("exact_indirect", {});
+  if (basis.options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
     beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis.options));
   }
   searched_ = basis.published.noise > 0
@@ -135,9 +136,9 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* smaller, StageClock&
                   : with_capped_weights(weighted_by_objective(basis.published, basis.options.objective));
   optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces_.size())}});
   // Without noise a fit errs by transport alone, and so do those that are held out.
-  if (!beside_surfaces_.empty() || basis.published.noise == 0) return;
+  if (!beside_surfaces_.empty() || basis.published.noise == 0 || clock.out_of_time()) return;
   held_out_ = smaller != nullptr ? smaller->held_out_ : hold_out(basis, problem, cache.settings);
-  clock.finish("held_out", {});
+  clock.finish_transport("held_out", {});
 }
 
 JointSearch RegionSearch::joint_search() const {

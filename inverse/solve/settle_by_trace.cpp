@@ -229,14 +229,14 @@ class Settler {
   }
 
  private:
-  bool out_of_time() const { return options_.time_limit > 0 && clock_.total() > options_.time_limit; }
+  bool out_of_time() const { return clock_.out_of_time(); }
 
   void finish(const char* stage, std::size_t lights, bool rests) {
     seconds_ += clock_.finish(stage, {{"lights", double(lights)}, {"at_rest", rests ? 1 : 0}});
   }
 
   FreshTrace trace_first_part_of(const LightEstimates& lights) {
-    FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_);
+    FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_, clock_);
     clock_.finish("verification", verification_figures(traced));
     return traced;
   }
@@ -244,7 +244,7 @@ class Settler {
   // Towards where they will settle, by first parts of traces, until they would hardly move. None goes.
   void approach(LightEstimates& lights) {
     LightEstimates earlier, before;
-    for (int draft = 0; draft < kDrafts; ++draft) {
+    for (int draft = 0; draft < kDrafts && !out_of_time(); ++draft) {
       FreshTrace traced = trace_first_part_of(lights);
       FreeLights free = free_lights(on_the_way_, lights, traced);
       const SettlingBench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced)};

@@ -129,6 +129,7 @@ void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<
 
 LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                      const LightResponse& response, const Optimum& found, StageClock& clock) {
+  if (clock.out_of_time()) return trace_lights(problem, options, control, found.lights, clock);
   if (found.settles) return settle_by_trace(problem, options, control, response, found, clock);
   if (found.refits) return refit_by_trace(problem, options, control, found.lights, clock);
   return trace_lights(problem, options, control, found.lights, clock);
@@ -154,7 +155,7 @@ std::unique_ptr<RegionSearch> search(const SearchBasis& basis, const SolveProble
                                      SolveResult& result) {
   std::unique_ptr<RegionSearch> best;
   std::optional<Box3f> region = first_region(problem, basis.options);
-  for (int regions = 0; regions < kMostRegions && (!best || region); ++regions) {
+  for (int regions = 0; regions < kMostRegions && (!best || (region && !clock.out_of_time())); ++regions) {
     auto search = std::make_unique<RegionSearch>(basis, problem, region, best.get(), clock);
     result.initial_seconds += search->initial_seconds;
     result.optimal_seconds += search->optimal_seconds;
@@ -167,7 +168,7 @@ std::unique_ptr<RegionSearch> search(const SearchBasis& basis, const SolveProble
 }
 
 SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
-  StageClock clock;
+  StageClock clock(options.time_limit);
   SolveResult result;
   check_target(problem);
   check_earlier(problem, options);
@@ -190,7 +191,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
                           region_may_grow(problem)};
   if (!(basis.published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  clock.finish("fixed_illumination", {});
+  clock.finish_transport("fixed_illumination", {});
 
   const std::unique_ptr<RegionSearch> searched = search(basis, problem, clock, result);
   const double before = clock.total();
@@ -206,7 +207,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   report_lights(problem, *searched, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
   result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
-  result.termination = optimum.termination;
+  result.termination = by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : optimum.termination;
   result.error_curve = optimum.error_curve;
   if (by_trace.lights.size() > optimum.lights.size()) {
     set_in_curve(by_trace.lights, result.relative_l2_cached, result.error_curve);

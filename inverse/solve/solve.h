@@ -36,7 +36,7 @@ struct SolveOptions {
   std::optional<double> error_threshold;                // of the lightcut, relative L2; absent: from the method
   int max_lights = 32;
   int exact_lights = 0;   // 0: as many as it takes
-  double time_limit = 0;  // seconds; 0: none
+  double time_limit = 0;  // seconds, beside those of transport, after which nothing further is sought; 0: none
   int verification_samples =
       0;  // paths per receiver of the final, fresh evaluation; 0: as trace_for_verification() chooses
   std::uint64_t seed = 0;

@@ -1,10 +1,12 @@
 #include "inverse/solve/traced_light.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "inverse/solve/not_reached.h"
 #include "inverse/solve/observe_target.h"
+#include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -27,9 +29,10 @@ FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lig
   renderer::Lights all = lights;
   all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
   const renderer::TraceOptions trace{samples, problem.bake.bounces, seed, true};
+  const auto start = std::chrono::steady_clock::now();
   auto traced = trace_illumination_by_light(problem.tracer, problem.target.receivers.samples, all, trace, control);
   traced.of_light.resize(lights.size());
-  return {std::move(traced.total), std::move(traced.of_light), samples};
+  return {std::move(traced.total), std::move(traced.of_light), samples, renderer::seconds_since(start)};
 }
 
 // Both together, as of all their samples.
@@ -42,6 +45,7 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
   }
   first.all = joined(std::move(first.all), first.samples, second.all, second.samples);
   first.samples += second.samples;
+  first.seconds += second.seconds;
   return first;
 }
 
@@ -52,6 +56,11 @@ double noise_that_does_not_matter(const SolveProblem& problem, const FreshTrace&
   const double error = relative_l2(traced.all.value, target.illumination, target.weight);
   const double unexplained = std::sqrt(std::max(0.0, error * error - noise * noise - of_target * of_target));
   return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
+}
+
+// At the speed of the first part.
+double samples_within(double seconds, const FreshTrace& first) {
+  return std::floor(first.samples * seconds / std::max(first.seconds, 1e-6));
 }
 
 }  // namespace
@@ -71,27 +80,36 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
 }
 
 FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
-                            const renderer::Control& control) {
+                            const renderer::Control& control, const StageClock& clock) {
   const int all = verification_samples(options, problem.target.receivers.size());
-  const int first = std::min(all, std::max(kLeastVerificationSamples, all / kFirstPart));
+  // How long they take is known afterwards.
+  const bool hurried = clock.is_limited() && options.verification_samples == 0;
+  const int first =
+      std::min(all, hurried ? kLeastVerificationSamples : std::max(kLeastVerificationSamples, all / kFirstPart));
   return trace_afresh(problem, lights, first, fresh_seed(options.seed, 2), control);
 }
 
 FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
-                     const SolveOptions& options, const renderer::Control& control) {
+                     const SolveOptions& options, const renderer::Control& control, const StageClock& clock) {
   const int most = verification_samples(options, problem.target.receivers.size());
   const int needed = options.verification_samples > 0
                          ? most
                          : renderer::samples_for_noise(first.samples, relative_standard_error(first.all).value_or(0),
                                                        noise_that_does_not_matter(problem, first), most);
-  const int more = needed - first.samples;
+  int more = needed - first.samples;
+  if (options.verification_samples == 0 && more > samples_within(clock.seconds_left(), first)) {
+    more = int(samples_within(clock.seconds_left(), first));
+    first.cut_short = true;
+  }
   if (more <= 0) return first;
   return joined(std::move(first), trace_afresh(problem, lights, more, fresh_seed(options.seed, 4), control));
 }
 
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
-                                  const SolveOptions& options, const renderer::Control& control) {
-  return completed(problem, lights, trace_first_part(problem, lights, options, control), options, control);
+                                  const SolveOptions& options, const renderer::Control& control,
+                                  const StageClock& clock) {
+  FreshTrace first = trace_first_part(problem, lights, options, control, clock);
+  return completed(problem, lights, std::move(first), options, control, clock);
 }
 
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {

@@ -2,6 +2,7 @@
 // What a solve traces by itself, beside the transport of a bake.
 
 #include "inverse/solve/solve.h"
+#include "inverse/solve/stage_clock.h"
 #include "renderer/trace/trace_illumination.h"
 
 namespace chiaro::inverse {
@@ -24,17 +25,22 @@ struct FreshTrace {
   renderer::Illumination all;                // cd/m²; with what shines anyway
   std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
   int samples = 0;                           // paths per receiver
+  double seconds = 0;                        // that they took
+  bool cut_short = false;                    // there was no time for as many as it would have taken
 };
 
 // With as many samples as were asked for; or else with as many as it takes until its noise hardly adds to that of the
-// target, or to what the lights leave unexplained, and no more than verification_samples().
+// target, or to what the lights leave unexplained, and no more than verification_samples(), nor than clock has time
+// for.
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
-                                  const SolveOptions& options, const renderer::Control& control);
-// The same in two: an eighth of the samples, by which one may decide against the lights, and then the others.
+                                  const SolveOptions& options, const renderer::Control& control,
+                                  const StageClock& clock);
+// The same in two: an eighth of the samples, or where time is limited as few as may be, by which one may decide against
+// the lights, and then the others.
 FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
-                            const renderer::Control& control);
+                            const renderer::Control& control, const StageClock& clock);
 FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
-                     const SolveOptions& options, const renderer::Control& control);
+                     const SolveOptions& options, const renderer::Control& control, const StageClock& clock);
 
 // Fills in how far the lights of the result are from the target.
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result);

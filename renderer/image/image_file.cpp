@@ -282,7 +282,8 @@ void save_image(const Image& image, const std::filesystem::path& path, const Cha
                 const Attributes& attributes) {
   const auto output = OIIO::ImageOutput::create(path.string());
   if (!output) {
-    OIIO::geterror();
+    // Where it has nothing to say it could not even look for one.
+    if (OIIO::geterror().empty()) throw Error({path.string(), "", "not enough memory to write an image", ""});
     throw Error({path.string(), "", "no image format has this extension", ".exr, .png, .tif, .jpg …"});
   }
   check_channels(image, path, *output);

@@ -83,6 +83,21 @@ TEST(CliRender, NoiseOfOneSampleIsNotKnown) {
   }
 }
 
+TEST(CliPaint, PicturesAreAsBrightAsTheIllumination) {
+  const TemporaryFolder folder;
+  const std::string strokes =
+      folder
+          .write("s.json",
+                 R"({"base":"black","strokes":[{"mode":"add","color":[1e6,1e6,1e6],"radius":9,"path":[[0,0,0]]}]})")
+          .string();
+  const std::string picture = folder / "picture.exr";
+  const Outcome painted = run_with({"paint", kScenes + "cornell.glb", "--strokes", strokes, "--max-edge", "0.5",
+                                    "--picture", picture, "--width", "16", "-o", folder / "painted.glb"});
+  ASSERT_EQ(painted.exit_code, kDone) << painted.standard_error;
+  const renderer::Image image = renderer::load_image(picture).image;
+  EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 9e4F);
+}
+
 TEST(CliIlluminate, OnePathWritesNoStandardErrors) {
   const TemporaryFolder folder;
   const std::string file = folder / "lit.glb";

@@ -27,6 +27,11 @@ TEST(CliTextOutput, PercentThatIsNotKnownIsSaidSo) {
   EXPECT_EQ(text_of_percent(std::nullopt), "not known");
 }
 
+TEST(CliTextOutput, IntervalsThatAreNotKnownAreSaidSo) {
+  EXPECT_EQ(text_of_interval({0.001F, 0.0123F, 0.002F}), "0.012");
+  EXPECT_EQ(text_of_interval({0.001F, renderer::kInfinity, 0.002F}), "not known");
+}
+
 TEST(CliTextOutput, BytesHaveDecimalUnits) {
   EXPECT_EQ(text_of_bytes(12), "12 bytes");
   EXPECT_EQ(text_of_bytes(1.5e9), "1.5 GB");

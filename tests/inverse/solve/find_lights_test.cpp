@@ -319,7 +319,7 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   const DirectProblem five(known);
   EXPECT_EQ(choose_light_count(five.response(), five.observations(), tree_of(five), options).lights.size(), 4U);
   options = {};
-  options.time_limit = 1e-9;
+  options.seconds_left = 0;
   EXPECT_TRUE(choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
 }
 

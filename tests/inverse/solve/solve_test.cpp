@@ -68,6 +68,27 @@ TEST(Solve, FindsTwoLightsByDirectLight) {
   EXPECT_LT(result.relative_l2, 0.01);
 }
 
+// The check, too, which takes longest where nothing is left to find.
+TEST(Solve, ATimeLimitEndsAllOfItAndIsWhatIsSaid) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(2), 0);
+  SolveProblem problem = problem_of(corner, target, 0);
+  SolveOptions options = quick();
+  options.verification_samples = 0;
+  options.time_limit = 1e-9;
+  SolveProblem in_place = problem;
+  in_place.lights_in_place = {renderer::PointLight{"lamp", {1.2F, 2.1F, 1.4F}, {1, 1, 1}}};
+  for (const SolveProblem& solved : {problem, in_place}) {
+    const SolveResult result = solve(solved, options);
+    EXPECT_FALSE(result.lights.empty());
+    EXPECT_EQ(result.termination, "time limit");
+    const auto check = std::find_if(result.stages.begin(), result.stages.end(),
+                                    [](const StageReport& stage) { return stage.name == "verification"; });
+    ASSERT_NE(check, result.stages.end());
+    EXPECT_EQ(check->figures.front(), (std::pair<std::string, double>("samples", 16)));
+  }
+}
+
 // Seven centimetres above a receiver of the floor, which then holds nearly all of the target's squared norm.
 LightEstimate light_beside_the_floor(const Receivers& receivers) {
   std::size_t beside = 0;

@@ -13,11 +13,11 @@ using tests::PaintedCorner;
 
 class TraceForVerification : public ::testing::Test {
  protected:
-  FreshTrace trace(const Target& target, const LightEstimates& lights, int asked_for = 0) const {
+  FreshTrace trace(const Target& target, const LightEstimates& lights, int asked_for = 0, double time_limit = 0) const {
     SolveOptions options;
     options.verification_samples = asked_for;
     const SolveProblem problem{corner_.tracer(), target, {}, {}, tests::bake_settings(-1), {}};
-    return trace_for_verification(problem, point_lights(lights), options, {});
+    return trace_for_verification(problem, point_lights(lights), options, {}, StageClock(time_limit));
   }
   int most() const { return verification_samples({}, corner_.receivers().size()); }
 
@@ -46,6 +46,18 @@ TEST_F(TraceForVerification, TakesFewWhereNoiseHardlyMatters) {
     EXPECT_GE(traced.samples, most() / 8);
   }
   EXPECT_LE(*relative_standard_error(trace(noisy, known_).all), 0.75 * target_noise(noisy));
+}
+
+TEST_F(TraceForVerification, TakesAsFewAsThereIsTimeForAndSaysSo) {
+  const Target exact = corner_.target(known_, -1);
+  const FreshTrace late = trace(exact, known_, 0, 1e-9), in_time = trace(exact, known_, 0, 1000);
+  EXPECT_EQ(late.samples, 16);
+  EXPECT_TRUE(late.cut_short);
+  EXPECT_GT(in_time.samples, 16);
+  EXPECT_FALSE(in_time.cut_short);
+  const FreshTrace asked_for = trace(exact, known_, 40, 1e-9);
+  EXPECT_EQ(asked_for.samples, 40) << "what was asked for is what it takes";
+  EXPECT_FALSE(asked_for.cut_short);
 }
 
 // In two parts, and as one as long: the same light within both their standard errors. Of the thousands of receivers and
