@@ -4,6 +4,16 @@
 #include "inverse/solve/instrumental_fit.h"
 
 namespace chiaro::inverse {
+namespace {
+
+// So that none of the receivers counts more than others: in parts of its noise, which weights are by where it is known,
+// or of its brightness.
+Eigen::VectorXd comparable_residuals(const Observations& observations, const Column& illumination) {
+  if (!(observations.noise > 0)) return relative_residuals(observations, illumination);
+  return observations.sqrt_weight.cwiseProduct((illumination - observations.wanted).rowwise().norm());
+}
+
+}  // namespace
 
 void SettlingBench::descend(const std::vector<Column>& indirect, LightEstimates& lights) const {
   descend_with_instruments(response, observations, indirect, lights);
@@ -23,7 +33,7 @@ double SettlingBench::norm(const Column& light) const { return (observations.sqr
 bool SettlingBench::explains_more(const Column& one, const Column& other, double gain, double standard_errors) const {
   const double error = relative_error(observations, one), of_other = relative_error(observations, other);
   return of_other * of_other > (1 + gain) * error * error &&
-         clearly_smaller(relative_residuals(observations, other), relative_residuals(observations, one),
+         clearly_smaller(comparable_residuals(observations, other), comparable_residuals(observations, one),
                          standard_errors);
 }
 
