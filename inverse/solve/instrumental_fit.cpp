@@ -17,6 +17,7 @@ constexpr double kLongestStep = 0.01;  // of the region's diagonal
 constexpr double kFaster = 1.5;        // a light that goes on its way, after it turned
 constexpr double kOutlier = 3;         // medians
 constexpr double kFirefly = 10;        // medians
+constexpr double kBeyondNoise = 30;    // standard errors
 constexpr double kLeastScale = 1e-3;   // of a receiver's brightness
 constexpr double kDark = 0.1;          // brightness that residuals are compared with at least, in means of all
 constexpr double kDamping = 1e-9;      // of the normal matrix' diagonal
@@ -46,10 +47,12 @@ Eigen::VectorXd robust_sqrt_weight(const Observations& observations, const Colum
 }
 
 // The weights, squared, that intensities are fitted with. Noise is not symmetric: its fireflies are part of its mean,
-// and without them light would be too dark. Where noise is not known, so far out they may be anything.
+// and without them light would be too dark. Where noise is known little is left of what it cannot be, such as strokes
+// that no light makes; where it is not, of what is far beyond most.
 Eigen::VectorXd weight_of_intensities(const Observations& observations, const Column& residual) {
-  const bool is_noise_known = observations.noise > 0;
-  return (is_noise_known ? observations.sqrt_weight : robust_sqrt_weight(observations, residual, kFirefly)).cwiseAbs2();
+  if (!(observations.noise > 0)) return robust_sqrt_weight(observations, residual, kFirefly).cwiseAbs2();
+  const Eigen::ArrayXd in_noise = observations.sqrt_weight.array() * residual.rowwise().norm().array();
+  return (observations.sqrt_weight.array() / (1 + (in_noise / kBeyondNoise).square())).square();
 }
 
 // How direct light, which is grey, changes with each light's x, y, z, then with its intensity; weighted.

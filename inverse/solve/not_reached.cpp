@@ -16,6 +16,10 @@ constexpr double kSeen = 0.05;        // relative L2 beyond noise
 constexpr double kCell = 0.08;        // of the receivers' diagonal: what counts as one place
 constexpr double kLeastCell = 0.005;  // of the squared error, that a cell counts with
 constexpr double kLeastShare = 0.05;  // of the squared error
+// A place of which one sees that it is not as painted, however little of all light is on it …
+constexpr double kClear = 0.5;               // of what is wanted or found, whichever is more …
+constexpr double kLit = 0.25;                // in mean brightness: it is not in the dark …
+constexpr std::size_t kLeastReceivers = 12;  // … and no accident
 constexpr std::size_t kMostPlaces = 3;
 constexpr double kStillFalls = 0.95;  // of the error, or less, by the last light
 
@@ -24,6 +28,7 @@ using Cell = std::array<long, 5>;
 
 struct Sums {
   double squared = 0, wanted = 0, found = 0;
+  std::size_t receivers = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
 };
 
@@ -47,6 +52,7 @@ std::map<Cell, Sums> sums_by_cell(const Target& target, const std::vector<Vec3f>
     for (int a = 0; a < 3; ++a) cell[std::size_t(2 + a)] = std::lround(std::floor(double(position[a]) / size));
     Sums& sums = cells[cell];
     sums.squared += squared;
+    ++sums.receivers;
     sums.wanted += double(luminance(target.illumination[i]));
     sums.found += double(luminance(illumination[i]));
     sums.moment += squared * to_eigen(position);
@@ -58,6 +64,18 @@ double total_of(const std::map<Cell, Sums>& cells) {
   double total = 0;
   for (const auto& [cell, sums] : cells) total += sums.squared;
   return total;
+}
+
+void keep_clear_ones(const Target& target, std::map<Cell, Sums>& cells) {
+  double brightness = 0;
+  for (const Vec3f value : target.illumination) brightness += double(luminance(value));
+  const double lit = kLit * brightness / double(target.illumination.size());
+  std::erase_if(cells, [&](const auto& cell) {
+    const Sums& sums = cell.second;
+    const double more = std::max(sums.wanted, sums.found);
+    return sums.receivers < kLeastReceivers || more < lit * double(sums.receivers) ||
+           std::abs(sums.found - sums.wanted) < kClear * more;
+  });
 }
 
 // Of each part of the receivers where it is too dark, and where it is too bright: all its cells that hold more than a
@@ -106,13 +124,13 @@ bool at_border(const SolveProblem& problem, const SolveResult& result) {
 }  // namespace
 
 std::vector<NotReached> places_not_reached(const Target& target, const std::vector<Vec3f>& illumination, double noise) {
-  const std::map<Cell, Sums> cells = sums_by_cell(target, illumination);
+  std::map<Cell, Sums> cells = sums_by_cell(target, illumination);
   double wanted = 0;
   for (std::size_t i = 0; i < target.illumination.size(); ++i) {
     wanted += double(target.weight[i]) * squared_norm(target.illumination[i]);
   }
   const double total = total_of(cells);
-  if (total <= (kSeen * kSeen + noise * noise) * wanted) return {};
+  if (total <= (kSeen * kSeen + noise * noise) * wanted) keep_clear_ones(target, cells);
   std::vector<NotReached> places = places_by_surface(target.receivers, cells, total);
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
   if (places.empty()) return places;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
+#include "inverse/numerics/median.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -13,6 +15,7 @@ namespace {
 constexpr double kOrdinary = 0.97;              // of all receivers are as bright as lights at a distance make them
 constexpr double kShadows = 0.01;               // relative error of transport at least: shadows' edges
 constexpr double kLinearBelow = 216.0 / 24389;  // relative luminance up to which L* is linear
+constexpr double kLeastNoise = 0.25;            // of the median: what is painted has none, and is a wish
 constexpr double kDark = 0.1;                   // in mean brightness: darker receivers count as being as bright
 
 // The brightness that this part of all receivers do not exceed.
@@ -27,6 +30,13 @@ double quantile(const Eigen::VectorXd& brightness, const Eigen::VectorXd& stands
     if (below >= wanted) return brightness[i];
   }
   return order.empty() ? 0 : brightness[order.back()];
+}
+
+// Of receivers whose noise is known.
+double typical(const Eigen::VectorXd& standard_error) {
+  std::vector<double> known;
+  std::copy_if(standard_error.begin(), standard_error.end(), std::back_inserter(known), [](double e) { return e > 0; });
+  return numerics::median(std::move(known));
 }
 
 }  // namespace
@@ -69,8 +79,10 @@ Observations with_capped_weights(const Observations& observations) {
 Observations weighted_by_noise(const Observations& observations, double transport_error) {
   const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
   const Eigen::ArrayXd by_transport = std::max(kShadows, transport_error) * brightness.max(kDark * brightness.mean());
+  const Eigen::ArrayXd noise =
+      observations.standard_error.array().max(kLeastNoise * typical(observations.standard_error));
   Observations weighted = observations;
-  weighted.sqrt_weight.array() /= (3 * observations.standard_error.array().square() + by_transport.square()).sqrt();
+  weighted.sqrt_weight.array() /= (3 * noise.square() + by_transport.square()).sqrt();
   weighted.measure_target();
   return weighted;
 }

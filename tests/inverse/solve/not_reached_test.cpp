@@ -30,6 +30,24 @@ TEST(NotReached, NamesThePlaceThatIsTooDark) {
   EXPECT_LE(share, 1 + 1e-9);
 }
 
+// The rest of the room is so bright that all of the patch is little of its light.
+TEST(NotReached, NamesAShadowThatNothingCasts) {
+  const PaintedCorner corner(0.1F);
+  Target target = corner.target(known_lights(2), 0);
+  std::vector<Vec3f> illumination = target.illumination;
+  const Receivers& receivers = corner.receivers();
+  const Vec3f middle = receivers.positions[receivers.parts[0].first_receiver + receivers.parts[0].receiver_count / 2];
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    if (length(receivers.positions[i] - middle) < 0.25F) target.illumination[i] = 0.1F * target.illumination[i];
+  }
+  ASSERT_LT(relative_l2(illumination, target.illumination, target.weight), 0.1);
+  const std::vector<NotReached> places = places_not_reached(target, illumination, 0.1);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_LT(length(places[0].position - middle), 0.25F);
+  EXPECT_GT(places[0].excess, 0);
+  EXPECT_EQ(places[0].node, receivers.parts[0].name);
+}
+
 TEST(NotReached, NoiseIsNoPlace) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(2), 0);

@@ -111,6 +111,27 @@ TEST_F(SettleByTrace, LightsThatAreThereForNothingGo) {
   EXPECT_EQ(settle(target, start, three).lights.size(), 3U);
 }
 
+// Paint has no noise, but is no precise measurement either: a shadow that nothing casts.
+TEST_F(SettleByTrace, StrokesThatNoLightMakesDoNotLeadTheLightsAstray) {
+  const LightEstimates known = known_lights(2);
+  Target target = corner_.target(known, -1);
+  const renderer::Vec3f middle{2, 0, 2.4F};
+  std::size_t painted = 0;
+  for (std::size_t i = 0; i < target.illumination.size(); ++i) {
+    if (length(target.receivers.positions[i] - middle) > 0.5F) continue;
+    target.illumination[i] = {0, 0, 0};
+    target.standard_error[i] = 0;
+    ++painted;
+  }
+  ASSERT_GT(painted, 10U);
+  const LightsByTrace settled = settle(target, displaced(known, 0.02));
+  ASSERT_EQ(settled.lights.size(), 2U);
+  EXPECT_LT(farthest_from(known, positions_of(settled.lights)), 2 * kPrecise);
+  for (std::size_t j = 0; j < known.size(); ++j) {
+    EXPECT_LT((settled.lights[j].intensity / known[j].intensity - 1).abs().maxCoeff(), 0.02) << j;
+  }
+}
+
 TEST_F(SettleByTrace, ALightThatStoodForTwoParts) {
   LightEstimates known = known_lights(3);
   const Eigen::Vector3d apart(0.25, 0.1, -0.2);
