@@ -24,7 +24,6 @@ constexpr int kMostCuts = 16;     // sizes of the light tree's cuts that are ref
 constexpr int kCutsAtOnce = 2;    // in turn, from the smallest …
 constexpr int kIdleCuts = 2;      // … until so many in a row explain no more
 constexpr double kNoise = 2;      // times the noise, or less: there is nothing but noise and the errors of transport
-constexpr double kKnee = 1.25;    // further lights must lower an error that is not noise by this factor
 constexpr double kNearNoise = 5;  // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
 constexpr double kStill = 5e-4;        // of the region's diagonal: indirect light hardly changes

@@ -12,6 +12,8 @@
 
 namespace chiaro::inverse {
 
+inline constexpr double kKnee = 1.25;  // further lights must lower an error that is not noise by this factor
+
 struct LightCountOptions {
   int max_lights = 32;
   int exact_lights = 0;  // 0: chosen here; fewer where all of them would not shine

@@ -14,6 +14,7 @@ struct LightsByTrace {
   FreshTrace traced;                          // its sum is that of these lights
   std::optional<LightIntervals> intervals{};  // absent: they did not settle, or not all of them
   double settling_seconds = 0;                // without the traces
+  bool went_astray = false;                   // as they settled: they were closer to the target before
 };
 
 StageFigures verification_figures(const FreshTrace& traced);

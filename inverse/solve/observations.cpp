@@ -54,6 +54,14 @@ renderer::Lights point_lights(const LightEstimates& estimates) {
   return lights;
 }
 
+LightEstimates light_estimates(const std::vector<renderer::PointLight>& lights) {
+  LightEstimates estimates;
+  for (const renderer::PointLight& light : lights) {
+    estimates.push_back({to_eigen(light.position), to_eigen(light.intensity).array()});
+  }
+  return estimates;
+}
+
 std::vector<Vec3f> light_positions(const LightEstimates& lights) {
   std::vector<Vec3f> positions;
   for (const LightEstimate& light : lights) positions.push_back(to_vec3f(light.position));

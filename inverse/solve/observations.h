@@ -58,6 +58,7 @@ using LightEstimates = std::vector<LightEstimate>;
 
 renderer::PointLight point_light(const LightEstimate& estimate);
 renderer::Lights point_lights(const LightEstimates& estimates);
+LightEstimates light_estimates(const std::vector<renderer::PointLight>& lights);
 std::vector<Vec3f> light_positions(const LightEstimates& lights);
 
 // ‖ weighted column times intensity ‖: the light's contribution (3.5).

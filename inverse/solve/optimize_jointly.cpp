@@ -111,10 +111,7 @@ std::vector<LightEstimates> earlier_sets(const SolveOptions& options) {
   for (const LightSet& set : options.earlier) {
     const int count = int(set.lights.size());
     if (count > options.max_lights || (options.exact_lights > 0 && count != options.exact_lights)) continue;
-    LightEstimates& lights = sets.emplace_back();
-    for (const renderer::PointLight& light : set.lights) {
-      lights.push_back({to_eigen(light.position), to_eigen(light.intensity).array()});
-    }
+    sets.push_back(light_estimates(set.lights));
   }
   return sets;
 }

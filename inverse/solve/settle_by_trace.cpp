@@ -24,6 +24,7 @@ constexpr std::size_t kSome = 8000;   // … and while lights are on their way
 constexpr double kNear = 1e-3;        // of the region's diagonal: of all light, that by bounces hardly changes …
 constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at all …
 constexpr double kCarried = 10;       // … or, so many times as far, can be carried along
+constexpr double kAstray = 1.1;  // of the error as found, which has more noise: that of lights that noise has not led
 constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
 
 // Direct light alone tells of lights here: none of them may be hidden from nearly all receivers.
@@ -200,7 +201,14 @@ class Settler {
         on_the_way_(problem, all_, brightness_, kSome, held),
         places_(search.places_near_grid_lights()) {}
 
-  LightsByTrace settle(LightEstimates lights) {
+  LightsByTrace settle(const LightEstimates& lights) {
+    LightsByTrace by_trace = come_to_rest_from(lights);
+    by_trace.went_astray = error_of(by_trace.traced) > kAstray * error_as_found_.value();
+    return by_trace;
+  }
+
+ private:
+  LightsByTrace come_to_rest_from(LightEstimates lights) {
     if (!any_share_a_place(lights, with_.near) && !out_of_time()) approach(lights);
     for (int round = 1;; ++round) {
       FreshTrace first = first_part_ ? *std::exchange(first_part_, std::nullopt) : trace_first_part_of(lights);
@@ -228,8 +236,11 @@ class Settler {
     }
   }
 
- private:
   bool out_of_time() const { return clock_.out_of_time(); }
+
+  double error_of(const FreshTrace& traced) const {
+    return relative_l2(traced.all.value, problem_.target.illumination, problem_.target.weight);
+  }
 
   void finish(const char* stage, std::size_t lights, bool rests) {
     seconds_ += clock_.finish(stage, {{"lights", double(lights)}, {"at_rest", rests ? 1 : 0}});
@@ -237,6 +248,7 @@ class Settler {
 
   FreshTrace trace_first_part_of(const LightEstimates& lights) {
     FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_, clock_);
+    if (!error_as_found_) error_as_found_ = error_of(traced);
     clock_.finish("verification", verification_figures(traced));
     return traced;
   }
@@ -316,6 +328,7 @@ class Settler {
   const Settling with_, on_the_way_;
   const std::vector<Eigen::Vector3d> places_;  // where a light may have been missed
   std::optional<FreshTrace> first_part_{};     // of the trace where the lights are in the end; absent: they moved since
+  std::optional<double> error_as_found_{};     // of the lights as they were found, by a first part
   double seconds_ = 0;                         // without the traces
   int further_lights_ = 0;
 };

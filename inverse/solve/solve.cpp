@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
 
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/check_brightness.h"
+#include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
@@ -127,10 +129,24 @@ void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<
   }
 }
 
+// Where what they leave is no noise: the fewest whose error further ones do not lower clearly.
+LightEstimates at_knee(const Optimum& found, const SolveOptions& options) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const LightSet& set : found.error_curve) least = std::min(least, set.relative_l2);
+  const auto enough = [&](const LightSet& set) { return set.relative_l2 <= kKnee * least; };
+  const auto fewest = std::find_if(found.error_curve.begin(), found.error_curve.end(), enough);
+  const bool may_be_fewer = options.exact_lights == 0 && found.held == 0 && fewest != found.error_curve.end();
+  return may_be_fewer && fewest->lights.size() < found.lights.size() ? light_estimates(fewest->lights) : found.lights;
+}
+
 LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                      const LightResponse& response, const Optimum& found, StageClock& clock) {
   if (clock.out_of_time()) return trace_lights(problem, options, control, found.lights, clock);
-  if (found.settles) return settle_by_trace(problem, options, control, response, found, clock);
+  if (found.settles) {
+    LightsByTrace settled = settle_by_trace(problem, options, control, response, found, clock);
+    if (!settled.went_astray || clock.out_of_time()) return settled;
+    return refit_by_trace(problem, options, control, at_knee(found, options), clock);
+  }
   if (found.refits) return refit_by_trace(problem, options, control, found.lights, clock);
   return trace_lights(problem, options, control, found.lights, clock);
 }
