@@ -43,6 +43,7 @@ class SettleByTrace : public ::testing::Test {
       options.seed = seed;
       const LightsByTrace settled = settle(target, start, options);
       EXPECT_TRUE(settled.intervals);
+      EXPECT_FALSE(settled.went_astray);
       EXPECT_EQ(settled.lights.size(), known.size());
       double worst = 0;
       for (std::size_t j = 0; j < known.size(); ++j) {
@@ -130,6 +131,24 @@ TEST_F(SettleByTrace, StrokesThatNoLightMakesDoNotLeadTheLightsAstray) {
   for (std::size_t j = 0; j < known.size(); ++j) {
     EXPECT_LT((settled.lights[j].intensity / known[j].intensity - 1).abs().maxCoeff(), 0.02) << j;
   }
+}
+
+// A patch so bright that a light of its own comes closest to it, which it is no target of.
+TEST_F(SettleByTrace, SaysWhereItLedAwayFromPaint) {
+  LightEstimates known = known_lights(1);
+  Target target = corner_.target(known, -1);
+  const Receivers& receivers = target.receivers;
+  const std::size_t middle = receivers.parts[1].first_receiver + receivers.parts[1].receiver_count / 2;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    if (length(receivers.positions[i] - receivers.positions[middle]) > 0.35F) continue;
+    target.illumination[i] = {8, 8, 0};
+    target.standard_error[i] = 0;
+  }
+  const renderer::Vec3f beside = receivers.positions[middle] + 0.35F * receivers.samples[middle].normal;
+  known.push_back({{beside.x, beside.y, beside.z}, {1, 1, 0}});
+  const LightsByTrace settled = settle(target, known);
+  EXPECT_TRUE(settled.went_astray);
+  EXPECT_GT(error_traced_of(settled.lights, target), 1.05 * error_traced_of(known, target));
 }
 
 TEST_F(SettleByTrace, ALightThatStoodForTwoParts) {
