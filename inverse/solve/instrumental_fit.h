@@ -22,7 +22,7 @@ void descend_with_instruments(const LightResponse& response, const Observations&
                               const std::vector<Column>& indirect, LightEstimates& lights);
 
 // The intensities alone, none negative, with weights by which residuals cannot take off the mean: noise is not
-// symmetric, and none but fireflies lose weight, and those only where the observations do not say how noisy they are.
+// symmetric. Where it is known, only what is far beyond it loses weight, and otherwise fireflies do.
 void fit_intensities_with_instruments(const LightResponse& response, const Observations& observations,
                                       const std::vector<Column>& indirect, LightEstimates& lights);
 
