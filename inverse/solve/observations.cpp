@@ -15,7 +15,8 @@ namespace {
 constexpr double kOrdinary = 0.97;              // of all receivers are as bright as lights at a distance make them
 constexpr double kShadows = 0.01;               // relative error of transport at least: shadows' edges
 constexpr double kLinearBelow = 216.0 / 24389;  // relative luminance up to which L* is linear
-constexpr double kLeastNoise = 0.25;            // of the median: what is painted has none, and is a wish
+constexpr double kPainted = 0.02;               // of the usual noise, or less: paint has none, and is a wish …
+constexpr double kWished = 0.25;                // … which is to be met as what has so much of it
 constexpr double kDark = 0.1;                   // in mean brightness: darker receivers count as being as bright
 
 // The brightness that this part of all receivers do not exceed.
@@ -87,8 +88,9 @@ Observations with_capped_weights(const Observations& observations) {
 Observations weighted_by_noise(const Observations& observations, double transport_error) {
   const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
   const Eigen::ArrayXd by_transport = std::max(kShadows, transport_error) * brightness.max(kDark * brightness.mean());
-  const Eigen::ArrayXd noise =
-      observations.standard_error.array().max(kLeastNoise * typical(observations.standard_error));
+  const double usual = typical(observations.standard_error);
+  const Eigen::ArrayXd noise = observations.standard_error.unaryExpr(
+      [&](double error) { return error < kPainted * usual ? kWished * usual : error; });
   Observations weighted = observations;
   weighted.sqrt_weight.array() /= (3 * noise.square() + by_transport.square()).sqrt();
   weighted.measure_target();
