@@ -52,8 +52,9 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
       command,
       {"--weak-light", "W", fmt::format("Fraction below which a light is deleted (default {})", solve.weak_light)},
       solve.weak_light, kZeroToOne);
-  add_number(command, {"--time-limit", "SECONDS", "Stop searching then, with what is found (without the time of the bake)"}, solve.time_limit,
-             kPositive);
+  add_number(command,
+             {"--time-limit", "SECONDS", "Stop searching then, with what is found (without the time of the bake)"},
+             solve.time_limit, kPositive);
   add_count(command,
             {"--verification-samples", "N",
              "Paths per receiver of the final check, by which the lights settle (default: until noise hardly matters, "

@@ -10,8 +10,9 @@ namespace chiaro::inverse {
 // stood for two becomes two, and one that was missed comes in. The trace becomes that of the settled lights: their
 // direct light is taken where they stand in the end, and the light by bounces is carried along by what an eighth of the
 // very same paths say of the change. Lights that go farther are traced again: they approach their places by traces of
-// fewer paths, of which the last is a part of the trace that they settle by. All of that takes what is left of the target
-// for noise, of which it follows no more than it must: where it is paint that no light makes, lights may go astray.
+// fewer paths, of which the last is a part of the trace that they settle by. All of that takes what is left of the
+// target for noise, of which it follows no more than it must: where it is paint that no light makes, lights may go
+// astray.
 LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control, const LightResponse& search, const Optimum& found,
                               StageClock& clock);

@@ -53,32 +53,27 @@ Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& oth
   return length > 0 ? Vector3d((to - from) / length) : otherwise;
 }
 
-[[noreturn]] void fail(const Mount& mount, const renderer::Scene& scene, const std::string& problem,
-                       const std::string& expected) {
-  const std::string& file = mount.asked_in.file.empty() ? scene.path : mount.asked_in.file;
-  throw renderer::Error({file, mount.asked_in.place, problem, expected});
-}
-
 double clearance_of(const Mount& mount, const renderer::Scene& scene) {
   if (mount.clearance && !(*mount.clearance <= double(renderer::kWorldLimit))) {
-    fail(mount, scene, fmt::format("a clearance of {:g} m", *mount.clearance),
-         fmt::format("at most {:g} m", renderer::kWorldLimit));
+    refuse(scene, mount.asked_in, fmt::format("a clearance of {:g} m", *mount.clearance),
+           fmt::format("at most {:g} m", renderer::kWorldLimit));
   }
   return mount.clearance ? *mount.clearance : kDefaultClearance * double(surface_bounds(scene).diagonal());
 }
 
 [[noreturn]] void too_near(const Mount& mount, const renderer::Scene& scene, double surface_distance) {
-  fail(mount, scene,
-       fmt::format("no light possible: lights are to hang {} m from \"{}\", and no nearer than {} m to any surface",
-                   clearance_of(mount, scene), mount.node, surface_distance),
-       "a distance to surfaces no larger than the clearance");
+  refuse(scene, mount.asked_in,
+         fmt::format("no light possible: lights are to hang {} m from \"{}\", and no nearer than {} m to any surface",
+                     clearance_of(mount, scene), mount.node, surface_distance),
+         "a distance to surfaces no larger than the clearance");
 }
 
 Box3f bounds_of(const Mount& mount, const renderer::Scene& scene) { return surface_bounds(scene, mount.node); }
 
 void check_node(const Mount& mount, const renderer::Scene& scene) {
   if (!bounds_of(mount, scene).empty()) return;
-  fail(mount, scene, fmt::format("no node with a mesh to hang lights on is named \"{}\"", mount.node), "a node's name");
+  refuse(scene, mount.asked_in, fmt::format("no node with a mesh to hang lights on is named \"{}\"", mount.node),
+         "a node's name");
 }
 
 }  // namespace

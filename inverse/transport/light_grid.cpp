@@ -242,14 +242,18 @@ std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, con
   return positions;
 }
 
+void refuse(const renderer::Scene& scene, const AskedIn& asked_in, const std::string& problem,
+            const std::string& expected) {
+  throw Error({asked_in.file.empty() ? scene.path : asked_in.file, asked_in.place, problem, expected});
+}
+
 Box3f parse_region(const renderer::Scene& scene, const Region& region) {
   const auto& [text, asked_in] = region;
-  const std::string& file = asked_in.file.empty() ? scene.path : asked_in.file;
   if (const auto box = six_numbers(text)) {
     const bool within = renderer::in_world(box->min) && renderer::in_world(box->max);
     if (within && box->diagonal() > 0) return *box;
-    throw Error({file, asked_in.place, within ? "is a single point" : "reaches too far",
-                 fmt::format("a box within {:g} m of the origin", renderer::kWorldLimit)});
+    refuse(scene, asked_in, within ? "is a single point" : "reaches too far",
+           fmt::format("a box within {:g} m of the origin", renderer::kWorldLimit));
   }
   Box3f box;
   for (const renderer::Instance& instance : scene.instances) {
@@ -258,8 +262,8 @@ Box3f parse_region(const renderer::Scene& scene, const Region& region) {
       box.extend(transform_point(instance.world_from_object, p));
   }
   if (box.empty()) {
-    throw Error({file, asked_in.place, fmt::format("no node with a mesh is named \"{}\"", text),
-                 "a node's name, or x0,y0,z0,x1,y1,z1 in metres"});
+    refuse(scene, asked_in, fmt::format("no node with a mesh is named \"{}\"", text),
+           "a node's name, or x0,y0,z0,x1,y1,z1 in metres");
   }
   return box;
 }

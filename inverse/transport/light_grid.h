@@ -90,6 +90,10 @@ struct AskedIn {
   std::string file, place;
 };
 
+// Error there; of an option, naming the scene that it was given for.
+[[noreturn]] void refuse(const renderer::Scene& scene, const AskedIn& asked_in, const std::string& problem,
+                         const std::string& expected);
+
 struct Region {
   std::string text;  // the name of a node, or "x0,y0,z0,x1,y1,z1", metres
   AskedIn asked_in{"", "option --region"};

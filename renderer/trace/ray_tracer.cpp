@@ -175,6 +175,12 @@ RayContext make_context(const Ray& ray, bool coherent) {
   return context;
 }
 
+bool is_blocked(RTCScene scene, const Ray& ray, RayContext& context) {
+  RTCRay query = make_ray(ray);
+  rtcOccluded1(scene, &context.embree, &query);
+  return query.tfar < 0;
+}
+
 }  // namespace
 
 // A mesh drawn once is put into the root scene in world space, so that its triangles share the root's hierarchy; a mesh
@@ -307,9 +313,7 @@ std::optional<Hit> RayTracer::intersect(const Ray& ray) const {
 
 Passage RayTracer::passage(const Ray& ray) const {
   RayContext context = make_context(ray, true);
-  RTCRay query = make_ray(ray);
-  rtcOccluded1(embree_->root, &context.embree, &query);
-  if (query.tfar < 0) return Passage::kBlocked;
+  if (is_blocked(embree_->root, ray, context)) return Passage::kBlocked;
   return context.passed_clear ? Passage::kClear : Passage::kFree;
 }
 
@@ -329,9 +333,7 @@ float RayTracer::transmittance_between(Vec3f from, Vec3f to) const {
   MeanPassage mean;
   RayContext context = make_context(ray, true);
   context.mean = &mean;
-  RTCRay query = make_ray(ray);
-  rtcOccluded1(embree_->root, &context.embree, &query);
-  return query.tfar < 0 ? 0 : mean.part();
+  return is_blocked(embree_->root, ray, context) ? 0 : mean.part();
 }
 
 float surface_rounding(float largest_coordinate, float radius) {
