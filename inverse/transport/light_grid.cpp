@@ -21,6 +21,7 @@ constexpr float kInsideFraction = 0.6F;     // of probe rays that meet back face
 constexpr float kTouching = 0.02F;          // of the spacing
 constexpr float kRandomClearance = 1e-3F;   // of the region's diagonal
 constexpr std::uint32_t kMostTries = 1000;  // of random positions, for each
+constexpr int kMostHalvings = 2;            // of the spacing, where no node is free
 
 // The 6 faces' and 8 corners' directions of a cube, turned a little so that they do not run along walls.
 std::vector<Vec3f> probe_directions() {
@@ -192,30 +193,56 @@ bool FreeSpace::contains(Vec3f position, float clearance) const {
   return !(sides_tell_ && looks_inside(at)) && at.nearest >= clearance;
 }
 
+namespace {
+
+// Lights at the nodes in free space that have a part of the region in so many cells around them.
+void place_lights(LightGrid& grid, const FreeSpace& free_space, const std::vector<Box3f>& parts, float cells) {
+  const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
+  const float touching = kTouching * least_positive(grid.spacing);
+  std::vector<char> free(nodes);
+  renderer::parallel_for(nodes, [&](std::size_t i) {
+    const Vec3f position = node_position(grid, i);
+    free[i] = cell_touches(grid, position, parts, cells) && free_space.contains(position, touching) ? 1 : 0;
+  });
+  grid.light_of_node.assign(nodes, -1);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (free[i] == 0) continue;
+    grid.light_of_node[i] = int(grid.positions.size());
+    grid.positions.push_back(node_position(grid, i));
+  }
+}
+
+LightGrid filled_grid(const Box3f& region, const std::array<int, 3>& counts, const std::vector<Box3f>& parts,
+                      const FreeSpace& free_space) {
+  LightGrid grid = empty_grid(region, counts);
+  place_lights(grid, free_space, parts, 1);
+  // Small parts beside solids: their neighbours.
+  const int most = parts.empty() ? 1 : 2 * *std::max_element(counts.begin(), counts.end());
+  for (int cells = 3; grid.positions.empty() && cells < 2 * most; cells *= 2) {
+    place_lights(grid, free_space, parts, float(cells));
+  }
+  return grid;
+}
+
+// Twice as many on every axis on which the region has an extent.
+std::array<int, 3> finer(std::array<int, 3> counts, Vec3f extent) {
+  for (int a = 0; a < 3; ++a) counts[a] *= extent[a] > 0 ? 2 : 1;
+  return counts;
+}
+
+}  // namespace
+
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer));
-  LightGrid grid =
-      empty_grid(region, options.counts[0] > 0 ? options.counts : counts_for(region.extent(), options.lights));
-  const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
+  const bool is_given = options.counts[0] > 0;
+  std::array<int, 3> counts = is_given ? options.counts : counts_for(region.extent(), options.lights);
   const FreeSpace free_space(tracer);
-  const float touching = kTouching * least_positive(grid.spacing);
-  const auto fill = [&](float cells) {
-    std::vector<char> free(nodes);
-    renderer::parallel_for(nodes, [&](std::size_t i) {
-      const Vec3f position = node_position(grid, i);
-      free[i] = cell_touches(grid, position, options.parts, cells) && free_space.contains(position, touching) ? 1 : 0;
-    });
-    grid.light_of_node.assign(nodes, -1);
-    for (std::size_t i = 0; i < nodes; ++i) {
-      if (free[i] == 0) continue;
-      grid.light_of_node[i] = int(grid.positions.size());
-      grid.positions.push_back(node_position(grid, i));
-    }
-  };
-  fill(1);
-  // Small parts beside solids: their neighbours.
-  const int most = options.parts.empty() ? 1 : 2 * *std::max_element(grid.counts.begin(), grid.counts.end());
-  for (int cells = 3; grid.positions.empty() && cells < 2 * most; cells *= 2) fill(float(cells));
+  LightGrid grid = filled_grid(region, counts, options.parts, free_space);
+  // A thin region that a solid nearly fills has its free space between such nodes.
+  for (int halvings = 0; grid.positions.empty() && !is_given && halvings < kMostHalvings; ++halvings) {
+    counts = finer(counts, region.extent());
+    grid = filled_grid(region, counts, options.parts, free_space);
+  }
   if (grid.positions.empty()) {
     throw Error({tracer.scene().path, "light grid",
                  "no light possible: every position lies inside a solid, or on a surface",

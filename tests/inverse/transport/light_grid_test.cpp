@@ -22,6 +22,14 @@ Scene room_with_ball() {
   return scene;
 }
 
+renderer::Mesh solid(const Box3f& box) {
+  renderer::Mesh mesh = test::room(box.extent(), 2);
+  for (Vec3f& p : mesh.positions) p += box.min;
+  for (Vec3f& n : mesh.normals) n = -1.0F * n;
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
 void expect_consistent(const LightGrid& grid) {
   ASSERT_EQ(grid.light_of_node.size(), std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2]);
   std::size_t light = 0, node = 0;
@@ -136,11 +144,22 @@ TEST(LightGrid, SmallPartsBesideSolidsHaveTheLightsAroundThem) {
   for (const Vec3f p : grid.positions) EXPECT_GT(length(p - kBall), kBallRadius);
 }
 
+// Spaced as the region's length asks for, every node lies inside the beam.
+TEST(LightGrid, ThinRegionsHaveLightsInWhatASolidLeavesOfThem) {
+  Scene scene = room_with_ball();
+  const Box3f beam{{0.5F, 1, 1}, {3.5F, 1.02F, 1.02F}};
+  test::add_mesh(scene, solid(beam), test::lambert({0.5F, 0.5F, 0.5F}), "beam");
+  const RayTracer tracer(scene);
+  const Box3f region{beam.min, {beam.max.x, 1.024F, beam.max.z}};
+  const LightGrid grid = make_light_grid(tracer, {.counts = {}, .region = region, .lights = 60});
+  expect_consistent(grid);
+  ASSERT_FALSE(grid.positions.empty());
+  for (const Vec3f p : grid.positions) EXPECT_GT(p.y, beam.max.y);
+}
+
 TEST(LightGrid, RoomsWithWallsTurnedOutwardsStillHaveLights) {
   Scene scene;
-  renderer::Mesh room = test::room({4, 3, 4}, 2);
-  for (auto& t : room.triangles) std::swap(t[1], t[2]);
-  test::add_mesh(scene, room, test::lambert({0.5F, 0.5F, 0.5F}), "room");
+  test::add_mesh(scene, solid({{0, 0, 0}, {4, 3, 4}}), test::lambert({0.5F, 0.5F, 0.5F}), "room");
   const RayTracer tracer(scene);
   EXPECT_EQ(make_light_grid(tracer, {.counts = {5, 5, 5}, .region = {}}).positions.size(), 125U);
 }
