@@ -124,6 +124,41 @@ float least_positive(Vec3f v) {
   return least == renderer::kInfinity ? 0 : least;
 }
 
+// Lights at the nodes in free space that have a part of the region in so many cells around them.
+void place_lights(LightGrid& grid, const FreeSpace& free_space, const std::vector<Box3f>& parts, float cells) {
+  const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
+  const float touching = kTouching * least_positive(grid.spacing);
+  std::vector<char> free(nodes);
+  renderer::parallel_for(nodes, [&](std::size_t i) {
+    const Vec3f position = node_position(grid, i);
+    free[i] = cell_touches(grid, position, parts, cells) && free_space.contains(position, touching) ? 1 : 0;
+  });
+  grid.light_of_node.assign(nodes, -1);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (free[i] == 0) continue;
+    grid.light_of_node[i] = int(grid.positions.size());
+    grid.positions.push_back(node_position(grid, i));
+  }
+}
+
+LightGrid filled_grid(const Box3f& region, const std::array<int, 3>& counts, const std::vector<Box3f>& parts,
+                      const FreeSpace& free_space) {
+  LightGrid grid = empty_grid(region, counts);
+  place_lights(grid, free_space, parts, 1);
+  // Small parts beside solids: their neighbours.
+  const int most = parts.empty() ? 1 : 2 * *std::max_element(counts.begin(), counts.end());
+  for (int cells = 3; grid.positions.empty() && cells < 2 * most; cells *= 2) {
+    place_lights(grid, free_space, parts, float(cells));
+  }
+  return grid;
+}
+
+// Twice as many on every axis on which the region has an extent.
+std::array<int, 3> finer(std::array<int, 3> counts, Vec3f extent) {
+  for (int a = 0; a < 3; ++a) counts[a] *= extent[a] > 0 ? 2 : 1;
+  return counts;
+}
+
 std::optional<Box3f> six_numbers(const std::string& text) {
   std::array<float, 6> v{};
   const char* at = text.data();
@@ -192,45 +227,6 @@ bool FreeSpace::contains(Vec3f position, float clearance) const {
   const Probe at = probe(tracer_, position, directions_);
   return !(sides_tell_ && looks_inside(at)) && at.nearest >= clearance;
 }
-
-namespace {
-
-// Lights at the nodes in free space that have a part of the region in so many cells around them.
-void place_lights(LightGrid& grid, const FreeSpace& free_space, const std::vector<Box3f>& parts, float cells) {
-  const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
-  const float touching = kTouching * least_positive(grid.spacing);
-  std::vector<char> free(nodes);
-  renderer::parallel_for(nodes, [&](std::size_t i) {
-    const Vec3f position = node_position(grid, i);
-    free[i] = cell_touches(grid, position, parts, cells) && free_space.contains(position, touching) ? 1 : 0;
-  });
-  grid.light_of_node.assign(nodes, -1);
-  for (std::size_t i = 0; i < nodes; ++i) {
-    if (free[i] == 0) continue;
-    grid.light_of_node[i] = int(grid.positions.size());
-    grid.positions.push_back(node_position(grid, i));
-  }
-}
-
-LightGrid filled_grid(const Box3f& region, const std::array<int, 3>& counts, const std::vector<Box3f>& parts,
-                      const FreeSpace& free_space) {
-  LightGrid grid = empty_grid(region, counts);
-  place_lights(grid, free_space, parts, 1);
-  // Small parts beside solids: their neighbours.
-  const int most = parts.empty() ? 1 : 2 * *std::max_element(counts.begin(), counts.end());
-  for (int cells = 3; grid.positions.empty() && cells < 2 * most; cells *= 2) {
-    place_lights(grid, free_space, parts, float(cells));
-  }
-  return grid;
-}
-
-// Twice as many on every axis on which the region has an extent.
-std::array<int, 3> finer(std::array<int, 3> counts, Vec3f extent) {
-  for (int a = 0; a < 3; ++a) counts[a] *= extent[a] > 0 ? 2 : 1;
-  return counts;
-}
-
-}  // namespace
 
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer));

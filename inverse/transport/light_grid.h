@@ -53,7 +53,8 @@ void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells);
 Box3f default_region(const renderer::RayTracer& tracer);
 
 struct LightGridOptions {
-  std::array<int, 3> counts{};       // 0, 0, 0: from the region's shape, for about so many nodes:
+  // 0, 0, 0: from the region's shape, for about so many nodes as `lights` says; more where none of them is free.
+  std::array<int, 3> counts{};
   std::optional<Box3f> region = {};  // absent: default_region()
   std::vector<Box3f> parts = {};     // of the region, the only ones of interest; none: all of it
   double lights = 700;
