@@ -277,7 +277,11 @@ class Search {
     const std::size_t most = std::min(std::size_t(most_lights()), best_.size() - 1);
     size = options_.exact_lights > 0 ? most : std::min(size, most);
     while (size > 0 && best_[size].lights.empty()) --size;
-    if (size > 0) r.lights = best_[size].lights, r.error = best_[size].error;
+    if (size > 0) {
+      r.lights = best_[size].lights;
+      r.error = best_[size].error;
+      if (held_out_) r.held_out = held_out_residuals(best_[size]);
+    }
     for (std::size_t n = 1; n <= most; ++n) r.sets.push_back(best_[n].lights);
     r.refinements = refinements_;
     r.out_of_time = out_of_time_;

@@ -28,6 +28,7 @@ struct LightCountResult {
   LightEstimates lights;
   double error = 0;
   std::vector<LightEstimates> sets;  // the best found of 1, 2, … lights; empty where there is none
+  Eigen::VectorXd held_out;          // residuals under the lights; empty: none are held out
   int refinements = 0;
   bool out_of_time = false;
 };

@@ -1,11 +1,16 @@
 #include "inverse/solve/held_out.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr int kPointsPerSample = 32, kPathsPerPoint = 16, kRaysPerPoint = 32;
+constexpr double kMissed = 0.3;     // of a receiver's brightness …
+constexpr double kSignificant = 5;  // … and standard errors, that its residual is more than
 
 TransportCache cache_of_nothing(std::size_t receivers) {
   TransportCache cache;
@@ -43,6 +48,16 @@ Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vect
     left += (response_.direct(lights[j].position) + *indirect[j]) * lights[j].intensity.matrix().asDiagonal();
   }
   return (observations_.sqrt_weight.asDiagonal() * left).rowwise().norm();
+}
+
+double HeldOut::part_missed(const Eigen::VectorXd& residuals) const {
+  const Eigen::VectorXd brightness = observations_.sqrt_weight.cwiseProduct(observations_.target.rowwise().norm());
+  const Eigen::VectorXd noise = observations_.sqrt_weight.cwiseProduct(observations_.standard_error);
+  double missed = 0;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    if (residuals[i] > std::max(kMissed * brightness[i], kSignificant * noise[i])) missed += brightness[i];
+  }
+  return missed > 0 ? missed / brightness.sum() : 0;
 }
 
 Eigen::VectorXd HeldOutResiduals::of(const LightEstimates& lights) {

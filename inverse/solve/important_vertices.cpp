@@ -112,24 +112,31 @@ Importance choose_important_vertices(const renderer::RayTracer& tracer, const Ta
   importance.illumination = illumination_term(target);
   normalize(importance.geometry);
   normalize(importance.illumination);
-  std::vector<double> density;
-  std::size_t painted = 0;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
     const double total = options.geometry_weight * importance.geometry[i] +
                          options.illumination_weight * importance.illumination[i];  // (3.2)
     importance.total.push_back(target.weight[i] > 0 ? total : 0);
-    density.push_back(target.weight[i] > 0 ? total + kLeastDensity : 0);
+  }
+  return choose_again(std::move(importance), target, std::size_t(options.count), options.seed);
+}
+
+Importance choose_again(Importance importance, const Target& target, std::size_t most, std::uint64_t seed) {
+  std::vector<double> density;
+  std::size_t painted = 0;
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+    density.push_back(target.weight[i] > 0 ? importance.total[i] + kLeastDensity : 0);
     painted += target.weight[i] > 0 ? 1 : 0;
   }
-  const std::size_t count = std::min(std::size_t(options.count), painted);
+  const std::size_t count = std::min(most, painted);
   importance.chosen = with_neighbours(target.receivers, brightest_receivers(target, count), count / 4);
   std::erase_if(importance.chosen, [&](std::size_t i) { return !(target.weight[i] > 0); });
   for (const std::size_t i : importance.chosen) density[i] = 0;
   const std::size_t left = count - importance.chosen.size();
-  const auto drawn = numerics::sample_without_replacement(density, left, options.seed);
+  const auto drawn = numerics::sample_without_replacement(density, left, seed);
   const std::vector<double> probability = numerics::inclusion_probabilities(density, left);
   importance.chosen.insert(importance.chosen.end(), drawn.begin(), drawn.end());
   std::sort(importance.chosen.begin(), importance.chosen.end());
+  importance.probability.clear();
   for (const std::size_t i : importance.chosen) importance.probability.push_back(density[i] > 0 ? probability[i] : 1);
   return importance;
 }

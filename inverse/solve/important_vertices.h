@@ -27,4 +27,7 @@ struct Importance {
 Importance choose_important_vertices(const renderer::RayTracer& tracer, const Target& target,
                                      const ImportanceOptions& options);
 
+// Of the same importance, by another draw.
+Importance choose_again(Importance importance, const Target& target, std::size_t most, std::uint64_t seed);
+
 }  // namespace chiaro::inverse

@@ -13,7 +13,8 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood, or more by noise
+constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood …
+constexpr double kFarNoise = 1.5;       // … or so many times its noise
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
@@ -164,6 +165,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.error = polished.error;
   found.noise = last.noise;
   found.sets = std::move(count.sets);
+  found.held_out = std::move(count.held_out);
   found.out_of_time = count.out_of_time || clock.out_of_time();
   return found;
 }
@@ -172,7 +174,7 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   const SolveOptions& options = search.options;
   const bool explained = is_explained(found), tied = ties_lights_together(search.problem);
   // Noise of the target, and of the transport that was searched by.
-  const double far_from_target = std::max(kFarFromTarget, search.searched.noise);
+  const double far_from_target = std::max(kFarFromTarget, kFarNoise * search.searched.noise);
   const bool far = found.beside_surfaces.empty() && found.error > far_from_target;
   const auto at_last = [&] {
     if (found.out_of_time || explained) return joined(found.beside_surfaces, found.others);

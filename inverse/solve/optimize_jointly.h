@@ -41,6 +41,7 @@ struct JointLights {
   LightEstimates beside_surfaces, others;
   double error = 0, noise = 0;       // of the others
   std::vector<LightEstimates> sets;  // of them, the best of each number, from 1
+  Eigen::VectorXd held_out;          // residuals of these receivers; empty: there are none
   bool out_of_time = false;
   LightEstimates start;
   std::vector<int> cut;  // of the light tree, nodes

@@ -23,13 +23,14 @@ constexpr std::size_t kCrowd = 3;       // so many of them at the border may sta
 constexpr double kAsClose = 1.1;        // of an error, or less: fewer lights are better
 constexpr float kGrowth = 0.5F;         // of the region's longest side
 constexpr double kClearlyBetter = 0.9;  // of an error, or less
+constexpr double kMisled = 0.1;         // of the target's brightness, that lights miss where they were not fitted to it
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
   const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
   const auto samples = numerics::chosen_from(problem.target.receivers.samples, draw.chosen);
   settings.seed = fresh_seed(basis.options.seed, 5);
-  Observations observations = observe_target(
-      problem.target, draw, fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control));
+  const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control);
+  Observations observations = with_noise(observe_target(problem.target, draw, fixed), problem.target, draw.chosen);
   return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), settings);
 }
 
@@ -94,63 +95,64 @@ SolveProblem with_region(SolveProblem problem, const std::optional<Box3f>& regio
 
 }  // namespace
 
-RegionSearch::RegionSearch(const SearchBasis& basis_, const SolveProblem& problem_, const std::optional<Box3f>& region,
-                           const RegionSearch* smaller, StageClock& clock)
-    : basis(basis_),
+RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const SolveProblem& problem_,
+                           const std::optional<Box3f>& region, const RegionSearch* before, StageClock& clock)
+    : basis(std::move(basis_)),
       problem(with_region(problem_, region)),
-      transport(prepare_transport(problem, basis.importance.chosen, basis.control)),
-      response(problem.tracer, basis.samples, transport.cache, allowed_places(problem, transport.cache.grid)) {
+      transport(prepare_transport(problem, basis->importance.chosen, basis->control)),
+      response(problem.tracer, basis->samples, transport.cache, allowed_places(problem, transport.cache.grid)) {
   if (response.grid_lights_near_places().empty()) no_place(problem);
   cache_seconds =
       clock.finish_transport("cache", {{"lights", double(transport.cache.grid.positions.size())},
                                        {"indirect_relative_error", transport.cache.indirect_relative_error}});
-  reported = is_joint(basis) ? standing_for_all(basis.published) : basis.published;
-  judged = is_joint(basis) ? weighted_by_objective(reported, basis.options.objective) : basis.published;
+  reported = is_joint(*basis) ? standing_for_all(basis->published) : basis->published;
+  judged = is_joint(*basis) ? weighted_by_objective(reported, basis->options.objective) : basis->published;
   judged.rules = problem.intensities;
-  searched_ = basis.published;
-  if (is_joint(basis)) look_beside_surfaces(smaller, clock);
+  searched_ = basis->published;
+  if (is_joint(*basis)) look_beside_surfaces(before, clock);
 
   const Observations remaining = less(searched_, response, beside_surfaces_);
-  distribution = estimate_light_distribution(response, remaining, basis.options.weak_light);
+  distribution = estimate_light_distribution(response, remaining, basis->options.weak_light);
   initial_seconds += clock.finish("nnls", distribution_figures(distribution));
   clusters = segment_distribution(distribution, remaining);
   initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
   tree = make_light_tree(response, remaining, clusters);
   optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
-  if (!is_joint(basis)) return;
-  const double before = clock.total();
+  if (!is_joint(*basis)) return;
+  const double begun = clock.total();
   found_ = search_jointly(joint_search(), beside_surfaces_, tree, clock);
-  optimal_seconds += clock.total() - before;
+  optimal_seconds += clock.total() - begun;
 }
 
-void RegionSearch::look_beside_surfaces(const RegionSearch* smaller, StageClock& clock) {
+void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& clock) {
   const TransportCache& cache = transport.cache;
-  exact_ = smaller != nullptr ? smaller->exact_
-                              : std::make_shared<const ExactIndirect>(problem.tracer, basis.samples, cache.settings);
+  const bool same_vertices = before != nullptr && before->basis == basis;
+  exact_ = same_vertices ? before->exact_
+                         : std::make_shared<const ExactIndirect>(problem.tracer, basis->samples, cache.settings);
   clock.finish_transport("exact_indirect", {});
-  if (basis.options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
-    beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis.options));
+  if (basis->options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
+    beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis->options));
   }
-  searched_ = basis.published.noise > 0
-                  ? weighted_by_noise(basis.published, cache.indirect_relative_error)
-                  : with_capped_weights(weighted_by_objective(basis.published, basis.options.objective));
+  searched_ = basis->published.noise > 0
+                  ? weighted_by_noise(basis->published, cache.indirect_relative_error)
+                  : with_capped_weights(weighted_by_objective(basis->published, basis->options.objective));
   optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces_.size())}});
   // Without noise a fit errs by transport alone, and so do those that are held out.
-  if (!beside_surfaces_.empty() || basis.published.noise == 0 || clock.out_of_time()) return;
-  held_out_ = smaller != nullptr ? smaller->held_out_ : hold_out(basis, problem, cache.settings);
+  if (!beside_surfaces_.empty() || basis->published.noise == 0 || clock.out_of_time()) return;
+  held_out_ = before != nullptr && before->held_out_ ? before->held_out_ : hold_out(*basis, problem, cache.settings);
   clock.finish_transport("held_out", {});
 }
 
 JointSearch RegionSearch::joint_search() const {
-  return {problem,        basis.options, basis.control,
-          response,       *exact_,       searched_,
-          judged,         reported,      transport.cache.indirect_relative_error,
+  return {problem,        basis->options, basis->control,
+          response,       *exact_,        searched_,
+          judged,         reported,       transport.cache.indirect_relative_error,
           held_out_.get()};
 }
 
 std::optional<Box3f> RegionSearch::wider_region() const {
   const bool may_grow =
-      basis.region_may_grow && is_joint(basis) && !found_.out_of_time && found_.beside_surfaces.empty();
+      basis->region_may_grow && is_joint(*basis) && !found_.out_of_time && found_.beside_surfaces.empty();
   if (!may_grow) return std::nullopt;
   const std::vector<Column> columns = evaluate_columns(response, found_.others, Evaluation::kTracedVisibility);
   std::vector<Vector3d> lights;
@@ -171,9 +173,21 @@ bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
          (fewer && found_.error < std::max(kCloseEnough, kAsClose * other.found_.error));
 }
 
+double RegionSearch::part_missed() const {
+  return found_.held_out.size() > 0 ? held_out_->part_missed(found_.held_out) : 0;
+}
+
+bool RegionSearch::was_misled() const {
+  return !found_.out_of_time && basis->options.earlier.empty() && part_missed() > kMisled;
+}
+
+bool RegionSearch::misses_less_than(const RegionSearch& other) const {
+  return found_.held_out.size() > 0 && part_missed() < other.part_missed();
+}
+
 Optimum RegionSearch::conclude(StageClock& clock) const {
-  return is_joint(basis) ? inverse::conclude(joint_search(), found_, clock)
-                         : optimize_as_published(response, basis.published, tree, basis.options, clock);
+  return is_joint(*basis) ? inverse::conclude(joint_search(), found_, clock)
+                          : optimize_as_published(response, basis->published, tree, basis->options, clock);
 }
 
 }  // namespace chiaro::inverse

@@ -12,7 +12,7 @@ namespace chiaro::inverse {
 struct SearchBasis {
   const SolveOptions& options;
   const renderer::Control& control;
-  const Importance& importance;
+  Importance importance;
   std::vector<renderer::SurfaceSample> samples;  // the important vertices
   Observations published;                        // what they want, by the weights of (3.6)
   bool region_may_grow;                          // nobody says where it ends
@@ -21,10 +21,10 @@ struct SearchBasis {
 // Lights sought in one region, from its transport up to the trace that they are judged by.
 class RegionSearch {
  public:
-  // Keeps references. region: of the light grid; absent: as the problem says. smaller: the search in a smaller region
-  // before, which has made what is the same in all; absent: this is the first.
-  RegionSearch(const SearchBasis& basis, const SolveProblem& problem, const std::optional<Box3f>& region,
-               const RegionSearch* smaller, StageClock& clock);
+  // Keeps references. region: of the light grid; absent: as the problem says. before: a search in another region, or of
+  // another basis, which has made what is the same in both; absent: this is the first.
+  RegionSearch(std::shared_ptr<const SearchBasis> basis, const SolveProblem& problem,
+               const std::optional<Box3f>& region, const RegionSearch* before, StageClock& clock);
   RegionSearch(const RegionSearch&) = delete;
   RegionSearch& operator=(const RegionSearch&) = delete;
 
@@ -34,10 +34,15 @@ class RegionSearch {
   // Of two searches, the one that came closer, or as close with fewer lights.
   bool is_clearly_better_than(const RegionSearch& other) const;
 
+  // The lights found miss a part of what receivers want that they were not fitted to.
+  bool was_misled() const;
+  // Of two searches with other important vertices.
+  bool misses_less_than(const RegionSearch& other) const;
+
   // The lights that are left. Once, at last.
   Optimum conclude(StageClock& clock) const;
 
-  const SearchBasis& basis;
+  const std::shared_ptr<const SearchBasis> basis;
   const SolveProblem problem;
   const PreparedTransport transport;
   const LightResponse response;
@@ -50,7 +55,8 @@ class RegionSearch {
 
  private:
   JointSearch joint_search() const;
-  void look_beside_surfaces(const RegionSearch* smaller, StageClock& clock);
+  double part_missed() const;
+  void look_beside_surfaces(const RegionSearch* before, StageClock& clock);
 
   Observations searched_;  // no receiver hides the light of all others
   std::shared_ptr<const ExactIndirect> exact_;

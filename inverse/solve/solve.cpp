@@ -28,8 +28,9 @@ namespace {
 
 using renderer::Error;
 
-constexpr int kMostRegions = 4;     // one larger than the other
-constexpr double kOnSurface = 0.5;  // of a target's receivers must lie on the scene
+constexpr int kMostRegions = 4;           // one larger than the other
+constexpr std::size_t kMoreVertices = 3;  // times as many, where they misled the search
+constexpr double kOnSurface = 0.5;        // of a target's receivers must lie on the scene
 
 void check_target(const SolveProblem& problem) {
   const double fraction = fraction_on_surface(problem.tracer, problem.target.receivers);
@@ -166,13 +167,22 @@ std::optional<Box3f> first_region(const SolveProblem& problem, const SolveOption
   return region;
 }
 
-// In ever larger regions, as long as that brings the lights clearly closer.
-std::unique_ptr<RegionSearch> search(const SearchBasis& basis, const SolveProblem& problem, StageClock& clock,
+SearchBasis make_basis(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                       Importance importance) {
+  auto samples = numerics::chosen_from(problem.target.receivers.samples, importance.chosen);
+  const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
+  Observations published = observe_target(problem.target, {importance.chosen, importance.probability}, fixed);
+  published = with_noise(std::move(published), problem.target, importance.chosen);
+  return {options, control, std::move(importance), std::move(samples), std::move(published), region_may_grow(problem)};
+}
+
+// In ever larger regions, as long as that brings the lights clearly closer. before: with other important vertices.
+std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& basis, const SolveProblem& problem,
+                                     std::optional<Box3f> region, const RegionSearch* before, StageClock& clock,
                                      SolveResult& result) {
   std::unique_ptr<RegionSearch> best;
-  std::optional<Box3f> region = first_region(problem, basis.options);
   for (int regions = 0; regions < kMostRegions && (!best || (region && !clock.out_of_time())); ++regions) {
-    auto search = std::make_unique<RegionSearch>(basis, problem, region, best.get(), clock);
+    auto search = std::make_unique<RegionSearch>(basis, problem, region, best ? best.get() : before, clock);
     result.initial_seconds += search->initial_seconds;
     result.optimal_seconds += search->optimal_seconds;
     result.cache_seconds += search->cache_seconds;
@@ -183,6 +193,36 @@ std::unique_ptr<RegionSearch> search(const SearchBasis& basis, const SolveProble
   return best;
 }
 
+// By so many important vertices, or more where these misled it.
+std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOptions& options,
+                                     const renderer::Control& control, StageClock& clock, SolveResult& result) {
+  const std::uint64_t seed = fresh_seed(options.seed, 3);
+  const auto finish_choice = [&](const Importance& importance) {
+    result.initial_seconds += clock.finish("important_vertices", {{"count", double(importance.chosen.size())}});
+  };
+  Importance importance = choose_important_vertices(
+      problem.tracer, problem.target,
+      {options.important_vertices, options.geometry_weight, options.illumination_weight, seed});
+  finish_choice(importance);
+  auto basis = std::make_shared<const SearchBasis>(make_basis(problem, options, control, std::move(importance)));
+  if (!(basis->published.wanted.array() > 0).any())
+    no_light_possible(problem, "the target is nowhere brighter than what shines already");
+  clock.finish_transport("fixed_illumination", {});
+  auto found = search(basis, problem, first_region(problem, options), nullptr, clock, result);
+  if (!found->was_misled() || clock.out_of_time()) return found;
+
+  const std::size_t before = basis->importance.chosen.size();
+  importance = choose_again(basis->importance, problem.target, kMoreVertices * before, seed);
+  if (importance.chosen.size() == before) return found;
+  finish_choice(importance);
+  basis = std::make_shared<const SearchBasis>(make_basis(problem, options, control, std::move(importance)));
+  clock.finish_transport("fixed_illumination", {});
+  const std::optional<Box3f> region =
+      region_may_grow(problem) ? std::optional(found->transport.cache.grid.region) : std::nullopt;
+  auto again = search(basis, problem, region, found.get(), clock, result);
+  return again->misses_less_than(*found) ? std::move(again) : std::move(found);
+}
+
 SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock(options.time_limit);
   SolveResult result;
@@ -190,26 +230,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   check_earlier(problem, options);
   if (!problem.lights_in_place.empty()) return fit_in_place(problem, options, control);
 
-  const Importance importance = choose_important_vertices(
-      problem.tracer, problem.target,
-      {options.important_vertices, options.geometry_weight, options.illumination_weight, fresh_seed(options.seed, 3)});
+  const std::unique_ptr<RegionSearch> searched = search(problem, options, control, clock, result);
+  const Importance& importance = searched->basis->importance;
   result.important_vertices = int(importance.chosen.size());
-  result.initial_seconds += clock.finish("important_vertices", {{"count", double(importance.chosen.size())}});
-
-  const auto samples = numerics::chosen_from(problem.target.receivers.samples, importance.chosen);
-  const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
-  const SearchBasis basis{options,
-                          control,
-                          importance,
-                          samples,
-                          with_noise(observe_target(problem.target, {importance.chosen, importance.probability}, fixed),
-                                     problem.target, importance.chosen),
-                          region_may_grow(problem)};
-  if (!(basis.published.wanted.array() > 0).any())
-    no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  clock.finish_transport("fixed_illumination", {});
-
-  const std::unique_ptr<RegionSearch> searched = search(basis, problem, clock, result);
   const double before = clock.total();
   Optimum optimum = searched->conclude(clock);
   result.optimal_seconds += clock.total() - before;

@@ -68,6 +68,30 @@ TEST_F(HeldOutRoom, ALightThatFitsNoiseIsNot) {
   EXPECT_FALSE(clearly_smaller(residuals(lights_), residuals(more)));
 }
 
+TEST_F(HeldOutRoom, TellsWhatPartOfTheTargetLightsMiss) {
+  EXPECT_NEAR(held_out_->part_missed(residuals({})), 1, 1e-12);
+  EXPECT_LT(held_out_->part_missed(residuals(lights_)), 0.01);
+  EXPECT_GT(held_out_->part_missed(residuals({lights_[1]})), 0.5);
+}
+
+TEST(HeldOut, MissesWhatIsLargeAndNoNoise) {
+  renderer::Scene scene;
+  test::add_mesh(scene, test::room({4, 3, 4}, 2), test::lambert({0.6F, 0.5F, 0.4F}), "room");
+  const renderer::RayTracer tracer(scene);
+  const auto receivers = receivers_of(scene);
+  // Two halves: on one the noise is a tenth of the light, on the other one per cent.
+  const auto count = Eigen::Index(receivers.size()), half = count / 2;
+  Observations observations = observations_of(Column::Constant(count, 3, 1 / std::sqrt(3.0)));
+  observations.standard_error.head(half).setConstant(0.1);
+  observations.standard_error.tail(count - half).setConstant(0.01);
+  const HeldOut held_out(tracer, receivers, observations,
+                         {.samples = 16, .bounces = 0, .seed = 3, .materials = "gltf"});
+  const auto missed = [&](double residual) { return held_out.part_missed(Eigen::VectorXd::Constant(count, residual)); };
+  EXPECT_EQ(missed(0.25), 0);
+  EXPECT_NEAR(missed(0.4), double(count - half) / double(count), 1e-12);
+  EXPECT_NEAR(missed(0.6), 1, 1e-12);
+}
+
 TEST_F(HeldOutRoom, ResidualsOfASearchAreThose) {
   HeldOutResiduals of_search(*held_out_, 0.01);
   const Eigen::VectorXd expected = residuals(lights_);

@@ -50,6 +50,15 @@ TEST_F(ImportantVertices, DependOnTheirSeedAndNothingElse) {
   EXPECT_NE(choose(target_, 300, 2).chosen, first);
 }
 
+TEST_F(ImportantVertices, AreChosenAgainByTheSameImportance) {
+  const Importance few = choose(target_, 100), many = choose(target_, 300);
+  const Importance again = choose_again(few, target_, 300, 1);
+  EXPECT_EQ(again.chosen, many.chosen);
+  EXPECT_EQ(again.probability, many.probability);
+  EXPECT_EQ(again.total, few.total);
+  EXPECT_NE(choose_again(few, target_, 300, 2).chosen, many.chosen);
+}
+
 TEST_F(ImportantVertices, ArePlacedWhereTheImportanceIs) {
   const Importance importance = choose(target_, 300);
   double mean = 0, chosen = 0;

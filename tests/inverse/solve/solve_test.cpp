@@ -68,6 +68,21 @@ TEST(Solve, FindsTwoLightsByDirectLight) {
   EXPECT_LT(result.relative_l2, 0.01);
 }
 
+// So few that nearly any lights explain them.
+TEST(Solve, SearchesAgainByMoreVerticesWhereFewMisledIt) {
+  const PaintedCorner corner;
+  const LightEstimates known = known_lights(3);
+  const Target target = corner.target(known, -1);
+  SolveOptions options = quick();
+  options.important_vertices = 12;
+  const SolveResult result = solve(problem_of(corner, target, -1), options);
+  EXPECT_EQ(result.important_vertices, 36);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.02 * corner.diagonal());
+  EXPECT_LT(result.relative_l2, 0.1);
+  options.important_vertices = 300;
+  EXPECT_EQ(solve(problem_of(corner, target, -1), options).important_vertices, 300);
+}
+
 // The check, too, which takes longest where nothing is left to find.
 TEST(Solve, ATimeLimitEndsAllOfItAndIsWhatIsSaid) {
   const PaintedCorner corner;
