@@ -152,8 +152,6 @@ LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, c
   return trace_lights(problem, options, control, found.lights, clock);
 }
 
-}  // namespace
-
 // Nobody says where the region of the lights ends.
 bool region_may_grow(const SolveProblem& problem) { return !problem.grid.region && !problem.cache_file; }
 
@@ -222,6 +220,8 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
   auto again = search(basis, problem, region, found.get(), clock, result);
   return again->misses_less_than(*found) ? std::move(again) : std::move(found);
 }
+
+}  // namespace
 
 SolveResult solve(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock(options.time_limit);
