@@ -14,7 +14,7 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood …
-constexpr double kFarNoise = 1.5;       // … or so many times its noise
+constexpr double kFarNoise = 2;         // … or so many times its noise
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
