@@ -75,7 +75,10 @@ int run_solve(SolveCommand options) {
   inverse::SolveProblem problem = solve_problem(stage, wanted.target, options.choices, options.common, session);
   use_cache(options, problem);
   inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
-  if (!options.from.empty()) solving.earlier = inverse::load_error_curve(options.from);
+  if (!options.from.empty()) {
+    solving.earlier = inverse::load_error_curve(options.from);
+    solving.earlier_file = options.from;
+  }
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   save_found_lights(options.scene, result, options.output, output_scene_options(options.choices));
   print_summary(session, options, wanted, result);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "inverse/solve/stage_clock.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
@@ -97,9 +98,11 @@ std::vector<NotReached> places_by_surface(const Receivers& receivers, const std:
   return places;
 }
 
+// Or may, as far as anybody knows.
 bool falls_still(const SolveResult& result, std::size_t count) {
   const auto& curve = result.error_curve;
-  if (curve.size() < 2 || curve.back().lights.size() != count) return false;
+  if (curve.size() < 2) return true;
+  if (curve.back().lights.size() != count) return false;
   return curve.back().relative_l2 < kStillFalls * curve[curve.size() - 2].relative_l2;
 }
 
@@ -142,9 +145,11 @@ std::vector<NotReached> places_not_reached(const Target& target, const std::vect
 std::string advice_for(const SolveProblem& problem, const SolveOptions& options, const SolveResult& result) {
   if (result.not_reached.empty()) return {};
   if (!problem.lights_in_place.empty()) return "lights that may move would come closer";
+  if (result.termination == kTimeLimit)
+    return "more time may bring the lights closer: the time limit ended their search";
   const int most = options.exact_lights > 0 ? options.exact_lights : options.max_lights;
   if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
-    return fmt::format("more lights may come closer: {} were allowed", most);
+    return fmt::format("more lights may come closer: {} {} allowed", most, most == 1 ? "was" : "were");
   }
   if (at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";
   if (problem.intensities.any() || !problem.places.mounts.empty() || problem.places.surface_distance > 0 ||

@@ -57,6 +57,16 @@ std::vector<std::size_t> all_indices(std::size_t count) {
                                          where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)));
 }
 
+// They light nothing that is painted where they stand, or had better not.
+[[noreturn]] void all_dark(const SolveProblem& problem, const LightResponse& response, const LightEstimates& found) {
+  for (const Column& column : evaluate_columns(response, found, Evaluation::kTracedVisibility)) {
+    if (!(column.array() > 0).any()) continue;
+    no_light_possible(problem, fmt::format("none{} brings what shines already closer to the target",
+                                           problem.intensities.any() ? " that keeps to the constraints" : ""));
+  }
+  nothing_lit(problem);
+}
+
 // Brightest contribution first.
 void report_lights(const SolveProblem& problem, const RegionSearch& searched, const LightsByTrace& by_trace,
                    SolveResult& result) {
@@ -71,7 +81,7 @@ void report_lights(const SolveProblem& problem, const RegionSearch& searched, co
     norm.push_back(contribution_norm(observations, columns[j], lights[j].intensity));
   }
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
-  if (!(total > 0)) nothing_lit(problem);
+  if (!(total > 0)) all_dark(problem, response, lights);
   std::vector<std::size_t> order = all_indices(lights.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   std::vector<int> number(lights.size());
@@ -90,7 +100,7 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
   std::vector<std::size_t> counts;
   for (const LightSet& set : options.earlier) counts.push_back(set.lights.size());
   throw Error(
-      {problem.tracer.scene().path, "earlier solve",
+      {options.earlier_file.empty() ? problem.tracer.scene().path : options.earlier_file.string(), "error_curve",
        fmt::format("has no set of {} lights", options.exact_lights > 0 ? options.exact_lights : options.max_lights),
        fmt::format("one of {}", fmt::join(counts, ", "))});
 }
@@ -104,11 +114,12 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
 }
 
 // As many as asked for, and one of them shines.
-void require_all_lights(const SolveProblem& problem, const SolveOptions& options, const LightEstimates& found) {
+void require_all_lights(const SolveProblem& problem, const SolveOptions& options, const LightResponse& response,
+                        const LightEstimates& found) {
   const int wanted = std::max(1, options.exact_lights);
   if (int(found.size()) < wanted) too_crowded(problem, wanted);
   const auto is_dark = [](const LightEstimate& light) { return !(light.intensity > 0).any(); };
-  if (std::all_of(found.begin(), found.end(), is_dark)) nothing_lit(problem);
+  if (std::all_of(found.begin(), found.end(), is_dark)) all_dark(problem, response, found);
 }
 
 double brightest_of(const LightEstimates& lights) {
@@ -238,7 +249,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.optimal_seconds += clock.total() - before;
   optimum.lights = filled_up(searched->response, searched->judged, std::move(optimum.lights),
                              std::size_t(std::max(1, options.exact_lights)));
-  require_all_lights(problem, options, optimum.lights);
+  require_all_lights(problem, options, searched->response, optimum.lights);
   check_brightness(problem, brightest_of(optimum.lights));
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
   check_brightness(problem, brightest_of(by_trace.lights));

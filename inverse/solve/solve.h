@@ -40,7 +40,8 @@ struct SolveOptions {
   int verification_samples =
       0;  // paths per receiver of the final, fresh evaluation; 0: as trace_for_verification() chooses
   std::uint64_t seed = 0;
-  std::vector<LightSet> earlier;        // of another solve of the same: nothing is searched, they are only refined
+  std::vector<LightSet> earlier;        // of another solve of the same: nothing is searched, they are only refined …
+  std::filesystem::path earlier_file;   // … and come from there
   std::filesystem::path report_folder;  // empty: none; what each stage found is written there (report.h)
 };
 

@@ -70,6 +70,11 @@ TEST(NotReached, SolvesSayWhatMayHelp) {
   const SolveResult few = solve(problem, options);
   EXPECT_FALSE(few.not_reached.empty());
   EXPECT_NE(few.advice.find("more lights"), std::string::npos) << few.advice;
+  options.max_lights = 1;
+  EXPECT_EQ(solve(problem, options).advice, "more lights may come closer: 1 was allowed");
+  options.time_limit = 1e-9;
+  EXPECT_NE(solve(problem, options).advice.find("time limit"), std::string::npos);
+  options.time_limit = 0;
   options.max_lights = 8;
   const SolveResult enough = solve(problem, options);
   EXPECT_TRUE(enough.not_reached.empty());

@@ -137,6 +137,22 @@ TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
   EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
 }
 
+// Every place in the region lights the surfaces: it is not to blame.
+TEST(Solve, SaysWhereLightsHadBetterBeDark) {
+  const PaintedCorner corner;
+  LightEstimates brighter = known_lights(1);
+  brighter[0].intensity *= 1.25;
+  Target target = corner.target(known_lights(1), -1);
+  for (std::size_t i = 0; i < target.illumination.size(); i += 100)
+    target.illumination[i] = 1.5F * target.illumination[i];
+  SolveProblem too_bright = problem_of(corner, target, -1);
+  too_bright.kept_lights = point_lights(brighter);
+  expect_said(error_of(too_bright, quick()), "no light possible: none brings what shines already closer to the target");
+  SolveProblem limited = problem_of(corner, target, -1);
+  limited.intensities.max_intensity = 1e-20;
+  expect_said(error_of(limited, quick()), "no light possible: none that keeps to the constraints brings");
+}
+
 TEST(Solve, LightsBrighterThanFilesSayAreRefused) {
   const PaintedCorner corner;
   Target target = corner.target(known_lights(1), 0);
