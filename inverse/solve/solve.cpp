@@ -31,6 +31,7 @@ using renderer::Error;
 constexpr int kMostRegions = 4;           // one larger than the other
 constexpr std::size_t kMoreVertices = 3;  // times as many, where they misled the search
 constexpr double kOnSurface = 0.5;        // of a target's receivers must lie on the scene
+constexpr double kLights = 0.05;  // of what 1 cd gives as far away as the scene is large, at receivers on average
 
 void check_target(const SolveProblem& problem) {
   const double fraction = fraction_on_surface(problem.tracer, problem.target.receivers);
@@ -59,8 +60,9 @@ std::vector<std::size_t> all_indices(std::size_t count) {
 
 // They light nothing that is painted where they stand, or had better not.
 [[noreturn]] void all_dark(const SolveProblem& problem, const LightResponse& response, const LightEstimates& found) {
+  const double diagonal = double(problem.tracer.bounds().diagonal()), at_diagonal = kLights / (diagonal * diagonal);
   for (const Column& column : evaluate_columns(response, found, Evaluation::kTracedVisibility)) {
-    if (!(column.array() > 0).any()) continue;
+    if (column.mean() < at_diagonal) continue;
     no_light_possible(problem, fmt::format("none{} brings what shines already closer to the target",
                                            problem.intensities.any() ? " that keeps to the constraints" : ""));
   }
