@@ -20,9 +20,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostCuts = 16;     // sizes of the light tree's cuts that are refined
-constexpr int kCutsAtOnce = 2;    // in turn, from the smallest …
-constexpr int kIdleCuts = 2;      // … until so many in a row explain no more
+constexpr int kMostCuts = 16;            // sizes of the light tree's cuts that are refined
+constexpr int kCutsAtOnce = 2;           // in turn, from the smallest …
+constexpr int kIdleCuts = 2;             // … until so many in a row explain no more
+constexpr double kKneeOfLimited = 1.02;  // in place of kKnee, where lights are as bright as they may be
+constexpr double kAtLimit = 0.99;        // of the intensity allowed, or more
 constexpr double kNoise = 2;      // times the noise, or less: there is nothing but noise and the errors of transport
 constexpr double kNearNoise = 5;  // times the noise, or less: little else is left
 constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
@@ -149,10 +151,20 @@ class Search {
 
   // The smallest size whose error no larger set lowers by more than the knee's factor, nor by more than noise explains.
   std::size_t knee() const {
-    const double enough = std::max({kKnee * least_error(), kNoiseMargin * observations_.noise, kRounding});
+    const double enough = std::max({knee_factor() * least_error(), kNoiseMargin * observations_.noise, kRounding});
     std::size_t size = 1;
     while (size + 1 < best_.size() && !(best_[size].error <= enough)) ++size;
     return size;
+  }
+
+  // One of many lights that are each as bright as they may be explains a part of what is left, and no more.
+  double knee_factor() const {
+    const auto least = std::min_element(best_.begin(), best_.end(),
+                                        [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
+    const bool limited = std::any_of(least->lights.begin(), least->lights.end(), [&](const LightEstimate& light) {
+      return light.intensity.maxCoeff() >= kAtLimit * observations_.rules.max_intensity;
+    });
+    return limited ? kKneeOfLimited : kKnee;
   }
 
   const Eigen::VectorXd& held_out_residuals(Candidate& candidate) {
@@ -197,7 +209,8 @@ class Search {
       const double error = best_[before].error;
       if (error <= observations_.noise * kNoiseMargin && int(size) >= options_.exact_lights) break;
       consider_one_more(best_[size].lights);
-      const bool gained = best_size() > before || (best_.size() > size + 1 && best_[size + 1].error * kKnee < error);
+      const bool gained =
+          best_size() > before || (best_.size() > size + 1 && best_[size + 1].error * knee_factor() < error);
       idle = gained ? 0 : idle + 1;
     }
   }

@@ -70,6 +70,19 @@ TEST_F(ConstrainedSolve, NoChannelIsBrighterThanAllowed) {
   for (const auto& light : lights) EXPECT_LE(double(max_component(light.intensity)), 4.1);
 }
 
+// Each explains a small part of what is left, and fewer would not do. The lights of the target have 17 cd together in
+// the channel that takes most of them.
+TEST_F(ConstrainedSolve, ManyDimLightsStandForFewBrightOnes) {
+  SolveProblem ruled = problem(target_);
+  ruled.intensities.max_intensity = 0.8;
+  SolveOptions many = options();
+  many.max_lights = 32;
+  const SolveResult result = solve(ruled, many);
+  EXPECT_GE(result.lights.size(), 22U);
+  EXPECT_LT(result.relative_l2, 0.15);  // 0.25 where each had to explain a fifth
+  for (const auto& light : lights_of(result)) EXPECT_LE(double(max_component(light.intensity)), 0.8);
+}
+
 TEST_F(ConstrainedSolve, LightsThatMayNotBeSeenAreNoneThatArePossible) {
   for (const int lights : {0, 1, 2}) {
     SolveProblem ruled = problem(target_);
