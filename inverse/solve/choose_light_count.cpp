@@ -20,18 +20,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostCuts = 16;            // sizes of the light tree's cuts that are refined
-constexpr int kCutsAtOnce = 2;           // in turn, from the smallest …
-constexpr int kIdleCuts = 2;             // … until so many in a row explain no more
-constexpr double kKneeOfLimited = 1.02;  // in place of kKnee, where lights are as bright as they may be
-constexpr double kAtLimit = 0.99;        // of the intensity allowed, or more
+constexpr int kMostCuts = 16;     // sizes of the light tree's cuts that are refined
+constexpr int kCutsAtOnce = 2;    // in turn, from the smallest …
+constexpr int kIdleCuts = 2;      // … until so many in a row explain no more
 constexpr double kNoise = 2;      // times the noise, or less: there is nothing but noise and the errors of transport
 constexpr double kNearNoise = 5;  // times the noise, or less: little else is left
-constexpr double kNoiseMargin = 1.02;  // an error this close to the noise is explained
-constexpr double kStill = 5e-4;        // of the region's diagonal: indirect light hardly changes
-constexpr double kRounding = 1e-4;     // an error this small is that of floats, and explained
-constexpr int kMany = 32;              // lights: no more than these are sought in order to find few
-constexpr int kIdleInsertions = 2;     // insertions in a row that may gain nothing
+constexpr double kKneeOfLimited = 1.02;  // in place of kKnee, where lights are as bright as they may be …
+constexpr double kAtLimit = 0.99;        // … at so much of the intensity allowed, or more
+constexpr double kNoiseMargin = 1.02;    // an error this close to the noise is explained
+constexpr double kStill = 5e-4;          // of the region's diagonal: indirect light hardly changes
+constexpr double kRounding = 1e-4;       // an error this small is that of floats, and explained
+constexpr int kMany = 32;                // lights: no more than these are sought in order to find few
+constexpr int kIdleInsertions = 2;       // insertions in a row that may gain nothing
 constexpr std::size_t kMostSplits = 3, kMostPairs = 3;
 // Of many starts these tell which to follow.
 constexpr JointRefinementOptions kFirstSteps{.max_iterations = 4, .function_tolerance = 1e-3};
@@ -143,11 +143,12 @@ class Search {
 
   bool little_is_left() const { return least_error() <= std::max(kNoise * observations_.noise, kRounding); }
 
-  double least_error() const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Candidate& c : best_) least = std::min(least, c.error);
-    return least;
+  const Candidate& least() const {
+    return *std::min_element(best_.begin(), best_.end(),
+                             [](const auto& a, const auto& b) { return a.error < b.error; });
   }
+
+  double least_error() const { return least().error; }
 
   // The smallest size whose error no larger set lowers by more than the knee's factor, nor by more than noise explains.
   std::size_t knee() const {
@@ -159,9 +160,8 @@ class Search {
 
   // One of many lights that are each as bright as they may be explains a part of what is left, and no more.
   double knee_factor() const {
-    const auto least = std::min_element(best_.begin(), best_.end(),
-                                        [](const Candidate& a, const Candidate& b) { return a.error < b.error; });
-    const bool limited = std::any_of(least->lights.begin(), least->lights.end(), [&](const LightEstimate& light) {
+    const LightEstimates& lights = least().lights;
+    const bool limited = std::any_of(lights.begin(), lights.end(), [&](const LightEstimate& light) {
       return light.intensity.maxCoeff() >= kAtLimit * observations_.rules.max_intensity;
     });
     return limited ? kKneeOfLimited : kKnee;

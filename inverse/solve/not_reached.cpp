@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "inverse/solve/optimize_jointly.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/transport/eigen_vectors.h"
 
@@ -147,7 +148,7 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
   if (!problem.lights_in_place.empty()) return "lights that may move would come closer";
   if (result.termination == kTimeLimit)
     return "more time may bring the lights closer: the time limit ended their search";
-  const int most = options.exact_lights > 0 ? options.exact_lights : options.max_lights;
+  const int most = most_lights(options);
   if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
     return fmt::format("more lights may come closer: {} {} allowed", most, most == 1 ? "was" : "were");
   }

@@ -101,10 +101,9 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
   if (options.earlier.empty() || !earlier_sets(options).empty()) return;
   std::vector<std::size_t> counts;
   for (const LightSet& set : options.earlier) counts.push_back(set.lights.size());
-  throw Error(
-      {options.earlier_file.empty() ? problem.tracer.scene().path : options.earlier_file.string(), "error_curve",
-       fmt::format("has no set of {} lights", options.exact_lights > 0 ? options.exact_lights : options.max_lights),
-       fmt::format("one of {}", fmt::join(counts, ", "))});
+  throw Error({options.earlier_file.empty() ? problem.tracer.scene().path : options.earlier_file.string(),
+               "error_curve", fmt::format("has no set of {} lights", most_lights(options)),
+               fmt::format("one of {}", fmt::join(counts, ", "))});
 }
 
 [[noreturn]] void too_crowded(const SolveProblem& problem, int lights) {
@@ -208,29 +207,26 @@ std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& b
 std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOptions& options,
                                      const renderer::Control& control, StageClock& clock, SolveResult& result) {
   const std::uint64_t seed = fresh_seed(options.seed, 3);
-  const auto finish_choice = [&](const Importance& importance) {
+  const auto basis_of = [&](Importance importance) {
     result.initial_seconds += clock.finish("important_vertices", {{"count", double(importance.chosen.size())}});
+    auto basis = std::make_shared<const SearchBasis>(make_basis(problem, options, control, std::move(importance)));
+    clock.finish_transport("fixed_illumination", {});
+    return basis;
   };
-  Importance importance = choose_important_vertices(
+  const auto basis = basis_of(choose_important_vertices(
       problem.tracer, problem.target,
-      {options.important_vertices, options.geometry_weight, options.illumination_weight, seed});
-  finish_choice(importance);
-  auto basis = std::make_shared<const SearchBasis>(make_basis(problem, options, control, std::move(importance)));
+      {options.important_vertices, options.geometry_weight, options.illumination_weight, seed}));
   if (!(basis->published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  clock.finish_transport("fixed_illumination", {});
   auto found = search(basis, problem, first_region(problem, options), nullptr, clock, result);
   if (!found->was_misled() || clock.out_of_time()) return found;
 
   const std::size_t before = basis->importance.chosen.size();
-  importance = choose_again(basis->importance, problem.target, kMoreVertices * before, seed);
-  if (importance.chosen.size() == before) return found;
-  finish_choice(importance);
-  basis = std::make_shared<const SearchBasis>(make_basis(problem, options, control, std::move(importance)));
-  clock.finish_transport("fixed_illumination", {});
+  Importance more = choose_again(basis->importance, problem.target, kMoreVertices * before, seed);
+  if (more.chosen.size() == before) return found;
   const std::optional<Box3f> region =
       region_may_grow(problem) ? std::optional(found->transport.cache.grid.region) : std::nullopt;
-  auto again = search(basis, problem, region, found.get(), clock, result);
+  auto again = search(basis_of(std::move(more)), problem, region, found.get(), clock, result);
   return again->misses_less_than(*found) ? std::move(again) : std::move(found);
 }
 
