@@ -143,25 +143,22 @@ class Search {
 
   bool little_is_left() const { return least_error() <= std::max(kNoise * observations_.noise, kRounding); }
 
-  const Candidate& least() const {
-    return *std::min_element(best_.begin(), best_.end(),
-                             [](const auto& a, const auto& b) { return a.error < b.error; });
+  double least_error() const {
+    const auto less = [](const auto& a, const auto& b) { return a.error < b.error; };
+    return std::min_element(best_.begin(), best_.end(), less)->error;
   }
-
-  double least_error() const { return least().error; }
 
   // The smallest size whose error no larger set lowers by more than the knee's factor, nor by more than noise explains.
   std::size_t knee() const {
-    const double enough = std::max({knee_factor() * least_error(), kNoiseMargin * observations_.noise, kRounding});
+    const double least = least_error(), noise = std::max(kNoiseMargin * observations_.noise, kRounding);
     std::size_t size = 1;
-    while (size + 1 < best_.size() && !(best_[size].error <= enough)) ++size;
+    while (size + 1 < best_.size() && !(best_[size].error <= std::max(knee_factor(best_[size]) * least, noise))) ++size;
     return size;
   }
 
-  // One of many lights that are each as bright as they may be explains a part of what is left, and no more.
-  double knee_factor() const {
-    const LightEstimates& lights = least().lights;
-    const bool limited = std::any_of(lights.begin(), lights.end(), [&](const LightEstimate& light) {
+  // Beside lights that are each as bright as they may be a further one explains a part of what is left, and no more.
+  double knee_factor(const Candidate& set) const {
+    const bool limited = std::any_of(set.lights.begin(), set.lights.end(), [&](const LightEstimate& light) {
       return light.intensity.maxCoeff() >= kAtLimit * observations_.rules.max_intensity;
     });
     return limited ? kKneeOfLimited : kKnee;
@@ -209,8 +206,8 @@ class Search {
       const double error = best_[before].error;
       if (error <= observations_.noise * kNoiseMargin && int(size) >= options_.exact_lights) break;
       consider_one_more(best_[size].lights);
-      const bool gained =
-          best_size() > before || (best_.size() > size + 1 && best_[size + 1].error * knee_factor() < error);
+      const bool gained = best_size() > before ||
+                          (best_.size() > size + 1 && best_[size + 1].error * knee_factor(best_[before]) < error);
       idle = gained ? 0 : idle + 1;
     }
   }

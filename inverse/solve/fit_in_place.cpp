@@ -111,7 +111,7 @@ ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& o
   ManyObservations many{numerics::chosen_from(problem.target.receivers.samples, draw.chosen), {}};
   const int fixed_samples = verification_samples(options, many.samples.size());
   const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
-  many.observations = weighted_by_objective(observe_target(problem.target, draw, fixed), options.objective);
+  many.observations = observe_target(problem.target, draw, fixed);
   many.observations.rules = problem.intensities;
   return many;
 }
@@ -120,13 +120,15 @@ ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& o
 
 std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
                                        const SolveOptions& options, const renderer::Control& control) {
-  const auto [samples, observations] = observe_many(problem, options, control);
+  const auto [samples, published] = observe_many(problem, options, control);
+  const Observations observations = weighted_by_objective(published, options.objective);
   const int paths = std::clamp(int(kComparedPaths / double(samples.size())), kLeastComparedSamples, kLeastSamples);
   std::vector<PlacedFit> fits;
   for (const renderer::Lights& lights : sets) {
     const std::vector<Column> columns = unity_columns(problem, lights, samples, paths, options, control);
     const IntensityFit fit = fit_intensities(observations, columns);
-    fits.push_back({fit.intensity, error_of(observations, columns, fit.intensity)});
+    fits.push_back(
+        {fit.intensity, error_of(observations, columns, fit.intensity), error_of(published, columns, fit.intensity)});
   }
   return fits;
 }
@@ -135,7 +137,8 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   StageClock clock(options.time_limit);
   SolveResult result;
   check_lights_in_place(problem);
-  const auto [samples, observations] = observe_many(problem, options, control);
+  const auto [samples, published] = observe_many(problem, options, control);
+  const Observations observations = weighted_by_objective(published, options.objective);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
   const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);
   result.cache_seconds = clock.finish_transport("traced_lights", {{"lights", double(columns.size())}});

@@ -7,7 +7,8 @@ namespace chiaro::inverse {
 // Intensities of lights at their places, fitted over up to 50 000 receivers.
 struct PlacedFit {
   std::vector<Eigen::Array3d> intensity;
-  double error = 0;  // (3.6) over these receivers
+  double error = 0;        // by the objective, over these receivers
+  double relative_l2 = 0;  // (3.6)
 };
 // Of each set, by what each of its lights brings by a little path tracing, whatever its intensity is now: to compare
 // sets by.

@@ -25,15 +25,19 @@ LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   return some;
 }
 
+LightSet set_of(const LightEstimates& lights, double relative_l2) {
+  LightSet set{{}, relative_l2};
+  for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
+  return set;
+}
+
 std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
                                      const LightEstimates& beside_surfaces, const LightCountResult& count) {
   std::vector<LightSet> curve;
   for (const LightEstimates& set : count.sets) {
     if (set.empty()) continue;
     const LightEstimates all = joined(beside_surfaces, set);
-    LightSet& best = curve.emplace_back();
-    for (const LightEstimate& light : all) best.lights.push_back(point_light(light));
-    best.relative_l2 = relative_error(judged, illumination_of(response, all));
+    curve.push_back(set_of(all, relative_error(judged, illumination_of(response, all))));
   }
   return curve;
 }
@@ -61,27 +65,45 @@ LightEstimates without_negligible(const LightResponse& response, const Observati
   return kept;
 }
 
+// Of several sets of lights the one to take, and the error of each that a search knows.
+struct RefittedLights {
+  LightEstimates lights;
+  std::vector<LightSet> error_curve;
+};
+
+LightEstimates with_intensities(LightEstimates lights, const std::vector<Eigen::Array3d>& intensity) {
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = intensity[j];
+  return lights;
+}
+
 // Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
-// important ones, and robust weights would not see it. Where no lights explain the target those may also speak for a
-// light that is none to all others: sets of fewer lights are refitted as well.
-LightEstimates best_over_many(const JointSearch& search, const LightEstimates& lights,
-                              const std::vector<LightEstimates>& sets, StageClock& clock) {
-  if (lights.empty()) return lights;
-  std::vector<LightEstimates> candidates{lights};
-  const std::size_t fewest = search.options.exact_lights > 0 ? lights.size() : 1;
-  for (std::size_t size = std::min(lights.size() - 1, sets.size()); size >= fewest; --size) {
-    if (!sets[size - 1].empty()) candidates.push_back(sets[size - 1]);
-  }
+// important ones, and robust weights would not see it: all sets are refitted to more. Where no lights explain the
+// target those may also speak for a light that is none to all others, so that fewer will do.
+RefittedLights refitted_over_many(const JointSearch& search, const LightEstimates& lights,
+                                  const std::vector<LightEstimates>& sets, bool fewer_may_do, StageClock& clock) {
+  std::vector<LightEstimates> candidates;
+  std::copy_if(sets.begin(), sets.end(), std::back_inserter(candidates),
+               [&](const LightEstimates& set) { return !set.empty() && set.size() < lights.size(); });
+  const std::size_t all = candidates.size();
+  candidates.push_back(lights);
+  std::copy_if(sets.begin(), sets.end(), std::back_inserter(candidates),
+               [&](const LightEstimates& set) { return set.size() > lights.size(); });
   std::vector<renderer::Lights> placed;
   for (const LightEstimates& candidate : candidates) placed.push_back(point_lights(candidate));
   const std::vector<PlacedFit> fits = refit_over_many(search.problem, placed, search.options, search.control);
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < fits.size(); ++k) {
-    if (fits[k].error <= kWorthALight * fits[best].error) best = k;
+
+  std::size_t least = all, best = all;
+  for (std::size_t k = 0; k < all; ++k) {
+    if (fits[k].error < fits[least].error) least = k;
   }
-  LightEstimates refitted = candidates[best];
-  for (std::size_t j = 0; j < refitted.size(); ++j) refitted[j].intensity = fits[best].intensity[j];
-  clock.finish("intensities_over_many", {{"lights", double(refitted.size())}, {"relative_l2", fits[best].error}});
+  const auto enough = [&](const PlacedFit& fit) { return fit.error <= kWorthALight * fits[least].error; };
+  if (fewer_may_do) best = std::size_t(std::find_if(fits.begin(), fits.end(), enough) - fits.begin());
+  RefittedLights refitted{with_intensities(candidates[best], fits[best].intensity), {}};
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    refitted.error_curve.push_back(set_of(with_intensities(candidates[k], fits[k].intensity), fits[k].relative_l2));
+  }
+  clock.finish("intensities_over_many",
+               {{"lights", double(refitted.lights.size())}, {"relative_l2", fits[best].error}});
   return refitted;
 }
 
@@ -95,6 +117,16 @@ LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
     lights.push_back(*brightest);
   }
   return lights;
+}
+
+// One light more never makes a set worse, however the search came by it.
+void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    const LightSet& fewer = curve[k - 1];
+    if (curve[k].relative_l2 <= fewer.relative_l2) continue;
+    const std::size_t count = curve[k].lights.size();
+    curve[k] = set_of(as_many_as_asked_for(light_estimates(fewer.lights), count), fewer.relative_l2);
+  }
 }
 
 }  // namespace
@@ -176,14 +208,13 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   // Noise of the target, and of the transport that was searched by.
   const double far_from_target = std::max(kFarFromTarget, kFarNoise * search.searched.noise);
   const bool far = found.beside_surfaces.empty() && found.error > far_from_target;
-  const auto at_last = [&] {
-    if (found.out_of_time || explained) return joined(found.beside_surfaces, found.others);
-    if (far) return best_over_many(search, found.others, found.sets, clock);
-    const LightEstimates all = joined(found.beside_surfaces, found.others);
-    return tied ? best_over_many(search, all, {}, clock) : all;
-  };
-  const LightEstimates all = at_last();
+  const LightEstimates as_found = joined(found.beside_surfaces, found.others);
+  const bool refitted = !as_found.empty() && !found.out_of_time && !explained && (far || tied);
+  auto [all, error_curve] =
+      refitted ? refitted_over_many(search, as_found, found.sets, far && options.exact_lights == 0, clock)
+               : RefittedLights{as_found, found.error_curve};
   const bool may_share_places = !(search.problem.places.light_distance > 0);
+  if (may_share_places) let_none_be_worse_than_fewer(error_curve);
   const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
   std::size_t held = found.beside_surfaces.size();
   LightEstimates lights =
@@ -194,7 +225,7 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
           : options.exact_lights > 0 ? "as many lights as asked for"
                                      : "no further light explains more",
           found.cut,
-          found.error_curve,
+          std::move(error_curve),
           !found.out_of_time && (far || tied),
           !found.out_of_time && !far && !tied,
           held};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/optimize_simplex.h"
@@ -23,7 +24,8 @@ constexpr std::size_t kCrowd = 3;       // so many of them at the border may sta
 constexpr double kAsClose = 1.1;        // of an error, or less: fewer lights are better
 constexpr float kGrowth = 0.5F;         // of the region's longest side
 constexpr double kClearlyBetter = 0.9;  // of an error, or less
-constexpr double kMisled = 0.1;         // of the target's brightness, that lights miss where they were not fitted to it
+constexpr double kMisled = 0.1;  // of the target's brightness, that lights miss where they were not fitted to it …
+constexpr double kMisledAndFar = 0.05;  // … or that those do that leave more than noise where they were
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
   const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
@@ -178,7 +180,9 @@ double RegionSearch::part_missed() const {
 }
 
 bool RegionSearch::was_misled() const {
-  return !found_.out_of_time && basis->options.earlier.empty() && part_missed() > kMisled;
+  const bool far = !(found_.error <= kKnee * found_.noise);
+  const double most = far ? kMisledAndFar : kMisled;
+  return !found_.out_of_time && basis->options.earlier.empty() && part_missed() > most;
 }
 
 bool RegionSearch::misses_less_than(const RegionSearch& other) const {

@@ -83,6 +83,24 @@ TEST_F(ConstrainedSolve, ManyDimLightsStandForFewBrightOnes) {
   for (const auto& light : lights_of(result)) EXPECT_LE(double(max_component(light.intensity)), 0.8);
 }
 
+// What the important vertices make of lights close to surfaces may be half of what the whole target does.
+TEST_F(ConstrainedSolve, TheCurveTellsTheErrorOfItsSets) {
+  SolveProblem ruled = problem(target_);
+  ruled.places.boxes = {{{0, 0.05F, 0}, {4, 0.15F, 4}}, {{0, 2.85F, 0}, {4, 2.95F, 4}}};
+  ruled.places.surface_distance = 0.05;
+  ruled.intensities.max_intensity = 10;
+  const SolveResult result = solve(ruled, options());
+  ASSERT_GE(result.error_curve.size(), 3U);
+  double fewer = 2;
+  for (const LightSet& set : result.error_curve) {
+    const Target produced = corner_.target(light_estimates(set.lights), 0);
+    const double traced = relative_l2(produced.illumination, target_.illumination, target_.weight);
+    EXPECT_NEAR(set.relative_l2, traced, 0.05 * traced) << set.lights.size() << " lights";
+    EXPECT_LE(set.relative_l2, fewer) << set.lights.size() << " lights";
+    fewer = set.relative_l2;
+  }
+}
+
 TEST_F(ConstrainedSolve, LightsThatMayNotBeSeenAreNoneThatArePossible) {
   for (const int lights : {0, 1, 2}) {
     SolveProblem ruled = problem(target_);
