@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/fit_in_place.h"
@@ -196,6 +198,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.others = std::move(polished.lights);
   found.error = polished.error;
   found.noise = last.noise;
+  found.times_noise = remaining.noise > 0 ? count.error / remaining.noise : std::numeric_limits<double>::infinity();
   found.sets = std::move(count.sets);
   found.held_out = std::move(count.held_out);
   found.out_of_time = count.out_of_time || clock.out_of_time();

@@ -180,8 +180,7 @@ double RegionSearch::part_missed() const {
 }
 
 bool RegionSearch::was_misled() const {
-  const bool far = !(found_.error <= kKnee * found_.noise);
-  const double most = far ? kMisledAndFar : kMisled;
+  const double most = found_.times_noise > kKnee ? kMisledAndFar : kMisled;
   return !found_.out_of_time && basis->options.earlier.empty() && part_missed() > most;
 }
 

@@ -69,9 +69,9 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   nothing_lit(problem);
 }
 
-// Brightest contribution first.
-void report_lights(const SolveProblem& problem, const RegionSearch& searched, const LightsByTrace& by_trace,
-                   SolveResult& result) {
+// Brightest contribution first. One that the last descent left dark is none, unless so many were asked for.
+void report_lights(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
+                   const LightsByTrace& by_trace, SolveResult& result) {
   const LightResponse& response = searched.response;
   const Observations& observations = searched.reported;
   const LightEstimates& lights = by_trace.lights;
@@ -85,6 +85,7 @@ void report_lights(const SolveProblem& problem, const RegionSearch& searched, co
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
   if (!(total > 0)) all_dark(problem, response, lights);
   std::vector<std::size_t> order = all_indices(lights.size());
+  if (options.exact_lights == 0) std::erase_if(order, [&](std::size_t j) { return !(lights[j].intensity > 0).any(); });
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   std::vector<int> number(lights.size());
   for (const std::size_t j : order) {
@@ -94,7 +95,9 @@ void report_lights(const SolveProblem& problem, const RegionSearch& searched, co
     result.lights.push_back({light, norm[j] / total, to_vec3f(intervals.lights[j].position),
                              to_vec3f(intervals.lights[j].intensity.matrix())});
   }
-  for (const auto& [j, k] : intervals.confounded) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
+  for (const auto& [j, k] : intervals.confounded) {
+    if (number[j] > 0 && number[k] > 0) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
+  }
 }
 
 void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
@@ -129,8 +132,12 @@ double brightest_of(const LightEstimates& lights) {
   return brightest;
 }
 
-// In place of the set of as many that the search knew, if any.
+// In place of the set of as many that the search knew, if any, unless that or a smaller one is as good.
 void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<LightSet>& curve) {
+  const auto as_good = [&](const LightSet& set) {
+    return set.lights.size() <= lights.size() && set.relative_l2 <= relative_l2;
+  };
+  if (std::any_of(curve.begin(), curve.end(), as_good)) return;
   LightSet set{{}, relative_l2};
   for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
   const auto at = std::find_if(curve.begin(), curve.end(),
@@ -252,7 +259,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
   check_brightness(problem, brightest_of(by_trace.lights));
   result.optimal_seconds += by_trace.settling_seconds;
-  report_lights(problem, *searched, by_trace, result);
+  report_lights(problem, options, *searched, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
   result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
   result.termination = by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : optimum.termination;
