@@ -36,7 +36,11 @@ LightSet read_set(const JsonField& field) {
 }
 
 std::vector<LightSet> read_curve(const JsonField& root) {
-  const JsonField curve = required_list(root, "error_curve");
+  const JsonField curve = required(root, "error_curve");
+  if (curve.value.is_array() && curve.value.empty()) {
+    curve.fail("has no sets of lights", "the summary of a solve with --method joint, which finds one of every size");
+  }
+  if (!curve.value.is_array()) curve.fail_as_found("a list of sets of lights");
   std::vector<LightSet> sets;
   for (std::size_t k = 0; k < curve.value.size(); ++k) sets.push_back(read_set(curve.element(k)));
   return sets;

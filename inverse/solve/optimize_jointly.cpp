@@ -33,13 +33,16 @@ LightSet set_of(const LightEstimates& lights, double relative_l2) {
   return set;
 }
 
+// beside_surfaces: in all of them.
 std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
                                      const LightEstimates& beside_surfaces, const LightCountResult& count) {
   std::vector<LightSet> curve;
+  const auto add = [&](const LightEstimates& lights) {
+    if (!lights.empty()) curve.push_back(set_of(lights, relative_error(judged, illumination_of(response, lights))));
+  };
+  add(beside_surfaces);
   for (const LightEstimates& set : count.sets) {
-    if (set.empty()) continue;
-    const LightEstimates all = joined(beside_surfaces, set);
-    curve.push_back(set_of(all, relative_error(judged, illumination_of(response, all))));
+    if (!set.empty()) add(joined(beside_surfaces, set));
   }
   return curve;
 }

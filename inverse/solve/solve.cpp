@@ -28,9 +28,10 @@ namespace {
 
 using renderer::Error;
 
-constexpr int kMostRegions = 4;           // one larger than the other
-constexpr std::size_t kMoreVertices = 3;  // times as many, where they misled the search
-constexpr double kOnSurface = 0.5;        // of a target's receivers must lie on the scene
+constexpr int kMostRegions = 4;                 // one larger than the other
+constexpr std::size_t kMoreVertices = 3;        // times as many, where they misled the search
+constexpr double kOnSurface = 0.5;              // of a target's receivers must lie on the scene
+constexpr std::size_t kReceiversPerLight = 40;  // at least, for a trace to tell where lights are and to judge them
 constexpr double kLights = 0.05;  // of what 1 cd gives as far away as the scene is large, at receivers on average
 
 void check_target(const SolveProblem& problem) {
@@ -159,9 +160,17 @@ LightEstimates at_knee(const Optimum& found, const SolveOptions& options) {
   return may_be_fewer && fewest->lights.size() < found.lights.size() ? light_estimates(fewest->lights) : found.lights;
 }
 
+// Lights fitted to so few would leave nothing of the noise of the trace that they are judged by.
+bool would_be_fitted_to_noise(const Target& target, std::size_t lights) {
+  const auto weighed = std::count_if(target.weight.begin(), target.weight.end(), [](float w) { return w > 0; });
+  return std::size_t(weighed) < kReceiversPerLight * lights;
+}
+
 LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                      const LightResponse& response, const Optimum& found, StageClock& clock) {
-  if (clock.out_of_time()) return trace_lights(problem, options, control, found.lights, clock);
+  if (clock.out_of_time() || would_be_fitted_to_noise(problem.target, found.lights.size())) {
+    return trace_lights(problem, options, control, found.lights, clock);
+  }
   if (found.settles) {
     LightsByTrace settled = settle_by_trace(problem, options, control, response, found, clock);
     if (!settled.went_astray || clock.out_of_time()) return settled;

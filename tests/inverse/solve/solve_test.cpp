@@ -131,7 +131,10 @@ TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
   const Target target = corner.target(known, 0);
   SolveOptions one = quick();
   one.max_lights = 1;
-  EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
+  const SolveResult alone = solve(problem_of(corner, target, 0), one);
+  EXPECT_EQ(alone.lights.size(), 1U);
+  ASSERT_EQ(alone.error_curve.size(), 1U);
+  EXPECT_EQ(alone.error_curve[0].lights.size(), 1U);
   one = quick();
   one.exact_lights = 1;
   EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
@@ -327,6 +330,24 @@ TEST(Solve, OneLightBeyondIsBetterThanManyAtTheBorder) {
   const SolveResult result = solve(problem_of(open, target, 0), options);
   ASSERT_EQ(result.lights.size(), 1U);
   EXPECT_LT(farthest_from(known, positions_of(result)), 1e-3 * open.diagonal());
+}
+
+// Fitted to a trace at one receiver a light would leave nothing there, and another trace would not agree.
+TEST(Solve, JudgesLightsOfOneReceiverByATraceThatTheyWereNotFittedTo) {
+  const PaintedCorner corner;
+  const LightEstimates known = known_lights(2);
+  Target target = corner.target(known, -1);
+  for (std::size_t i = 0; i < target.weight.size(); ++i) target.weight[i] = i == 7 ? 1 : 0;
+  SolveOptions options = quick();
+  options.verification_samples = 256;
+  const SolveResult result = solve(problem_of(corner, target, -1), options);
+  LightEstimates found;
+  for (const FoundLight& light : result.lights) {
+    found.push_back(light_estimates({std::get<renderer::PointLight>(light.light)})[0]);
+  }
+  const Target produced = corner.target(found, -1);
+  const double afresh = relative_l2(produced.illumination, target.illumination, target.weight);
+  EXPECT_GT(result.relative_l2, 0.5 * afresh);
 }
 
 TEST(Solve, UnweightedReceiversDoNotMatter) {
