@@ -16,7 +16,6 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr std::size_t kMany = 50000;       // receivers at most
 constexpr int kLeastSamples = 64;          // paths per receiver
 constexpr double kComparedPaths = 2e6;     // of all receivers, where sets of lights are only compared …
 constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
@@ -105,9 +104,9 @@ struct ManyObservations {
   Observations observations;
 };
 
-ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& options,
+ManyObservations observe_many(const SolveProblem& problem, std::size_t receivers, const SolveOptions& options,
                               const renderer::Control& control) {
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const ReceiverDraw draw = draw_evenly(problem.target, receivers);
   ManyObservations many{numerics::chosen_from(problem.target.receivers.samples, draw.chosen), {}};
   const int fixed_samples = verification_samples(options, many.samples.size());
   const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
@@ -119,8 +118,10 @@ ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& o
 }  // namespace
 
 std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
-                                       const SolveOptions& options, const renderer::Control& control) {
-  const auto [samples, published] = observe_many(problem, options, control);
+                                       std::size_t receivers, const SolveOptions& options,
+                                       const renderer::Control& control) {
+  if (sets.empty()) return {};
+  const auto [samples, published] = observe_many(problem, receivers, options, control);
   const Observations observations = weighted_by_objective(published, options.objective);
   const int paths = std::clamp(int(kComparedPaths / double(samples.size())), kLeastComparedSamples, kLeastSamples);
   std::vector<PlacedFit> fits;
@@ -137,7 +138,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   StageClock clock(options.time_limit);
   SolveResult result;
   check_lights_in_place(problem);
-  const auto [samples, published] = observe_many(problem, options, control);
+  const auto [samples, published] = observe_many(problem, kManyReceivers, options, control);
   const Observations observations = weighted_by_objective(published, options.objective);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
   const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);

@@ -18,6 +18,8 @@ class HeldOut {
   std::vector<Column> indirect(const LightEstimates& lights) const;
   // Weighted, of each receiver. Their squares would be those of a few receivers beside lights.
   Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
+  // (3.6) over these receivers.
+  double relative_error(const Eigen::VectorXd& residuals) const { return residuals.norm() / observations_.target_norm; }
   // Of the target's brightness, the part on receivers of which these residuals are a large part, and not by noise.
   double part_missed(const Eigen::VectorXd& residuals) const;
 

@@ -15,12 +15,13 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood …
-constexpr double kFarNoise = 2;         // … or so many times its noise
-constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
-constexpr double kNegligible = 1e-3;    // contribution to the target's norm
-constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
-constexpr double kSignificant = 10;     // times what noise alone makes of a light: transport errs, too
+constexpr double kFarFromTarget = 0.1;   // error of lights that do not stand where the target's stood …
+constexpr double kFarNoise = 2;          // … or so many times its noise
+constexpr double kWorthALight = 1.05;    // times the error of more lights, or less: they are too many
+constexpr std::size_t kOfLarger = 2000;  // receivers that tell the error of sets of more lights than are taken
+constexpr double kNegligible = 1e-3;     // contribution to the target's norm
+constexpr double kHardlySeen = 1e-2;     // the same, of a light that may stand anywhere
+constexpr double kSignificant = 10;      // times what noise alone makes of a light: transport errs, too
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
@@ -76,9 +77,15 @@ struct RefittedLights {
   std::vector<LightSet> error_curve;
 };
 
-LightEstimates with_intensities(LightEstimates lights, const std::vector<Eigen::Array3d>& intensity) {
-  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = intensity[j];
-  return lights;
+// With the intensities that come closest to the target at so many receivers.
+std::vector<PlacedFit> refit(const JointSearch& search, std::vector<LightEstimates>& sets, std::size_t receivers) {
+  std::vector<renderer::Lights> placed;
+  for (const LightEstimates& set : sets) placed.push_back(point_lights(set));
+  std::vector<PlacedFit> fits = refit_over_many(search.problem, placed, receivers, search.options, search.control);
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    for (std::size_t j = 0; j < sets[k].size(); ++j) sets[k][j].intensity = fits[k].intensity[j];
+  }
+  return fits;
 }
 
 // Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
@@ -86,26 +93,26 @@ LightEstimates with_intensities(LightEstimates lights, const std::vector<Eigen::
 // target those may also speak for a light that is none to all others, so that fewer will do.
 RefittedLights refitted_over_many(const JointSearch& search, const LightEstimates& lights,
                                   const std::vector<LightEstimates>& sets, bool fewer_may_do, StageClock& clock) {
-  std::vector<LightEstimates> candidates;
-  std::copy_if(sets.begin(), sets.end(), std::back_inserter(candidates),
-               [&](const LightEstimates& set) { return !set.empty() && set.size() < lights.size(); });
-  const std::size_t all = candidates.size();
-  candidates.push_back(lights);
-  std::copy_if(sets.begin(), sets.end(), std::back_inserter(candidates),
-               [&](const LightEstimates& set) { return set.size() > lights.size(); });
-  std::vector<renderer::Lights> placed;
-  for (const LightEstimates& candidate : candidates) placed.push_back(point_lights(candidate));
-  const std::vector<PlacedFit> fits = refit_over_many(search.problem, placed, search.options, search.control);
-
-  std::size_t least = all, best = all;
-  for (std::size_t k = 0; k < all; ++k) {
-    if (fits[k].error < fits[least].error) least = k;
+  std::vector<LightEstimates> up_to_all, larger;
+  for (const LightEstimates& set : sets) {
+    if (!set.empty() && set.size() < lights.size()) up_to_all.push_back(set);
+    if (set.size() > lights.size()) larger.push_back(set);
   }
-  const auto enough = [&](const PlacedFit& fit) { return fit.error <= kWorthALight * fits[least].error; };
-  if (fewer_may_do) best = std::size_t(std::find_if(fits.begin(), fits.end(), enough) - fits.begin());
-  RefittedLights refitted{with_intensities(candidates[best], fits[best].intensity), {}};
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    refitted.error_curve.push_back(set_of(with_intensities(candidates[k], fits[k].intensity), fits[k].relative_l2));
+  up_to_all.push_back(lights);
+  const std::vector<PlacedFit> fits = refit(search, up_to_all, kManyReceivers);
+  const std::vector<PlacedFit> fits_of_larger = refit(search, larger, kOfLarger);
+
+  double least = fits.back().error;
+  for (const PlacedFit& fit : fits) least = std::min(least, fit.error);
+  const auto enough = [&](const PlacedFit& fit) { return fit.error <= kWorthALight * least; };
+  const std::size_t best =
+      fewer_may_do ? std::size_t(std::find_if(fits.begin(), fits.end(), enough) - fits.begin()) : fits.size() - 1;
+  RefittedLights refitted{up_to_all[best], {}};
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    refitted.error_curve.push_back(set_of(up_to_all[k], fits[k].relative_l2));
+  }
+  for (std::size_t k = 0; k < larger.size(); ++k) {
+    refitted.error_curve.push_back(set_of(larger[k], fits_of_larger[k].relative_l2));
   }
   clock.finish("intensities_over_many",
                {{"lights", double(refitted.lights.size())}, {"relative_l2", fits[best].error}});

@@ -25,7 +25,8 @@ constexpr double kAsClose = 1.1;        // of an error, or less: fewer lights ar
 constexpr float kGrowth = 0.5F;         // of the region's longest side
 constexpr double kClearlyBetter = 0.9;  // of an error, or less
 constexpr double kMisled = 0.1;  // of the target's brightness, that lights miss where they were not fitted to it …
-constexpr double kMisledAndFar = 0.05;  // … or that those do that leave more than noise where they were
+constexpr double kMisledAndFar = 0.05;      // … or that those do that leave more than noise where they were
+constexpr double kFartherElsewhere = 1.05;  // times the error where lights were fitted, or more: that misled them
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
   const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
@@ -33,6 +34,7 @@ std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolvePro
   settings.seed = fresh_seed(basis.options.seed, 5);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control);
   Observations observations = with_noise(observe_target(problem.target, draw, fixed), problem.target, draw.chosen);
+  if (observations.noise == 0) observations = weighted_by_objective(observations, basis.options.objective);
   return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), settings);
 }
 
@@ -124,6 +126,7 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
   const double begun = clock.total();
   found_ = search_jointly(joint_search(), beside_surfaces_, tree, clock);
   optimal_seconds += clock.total() - begun;
+  if (basis->published.noise == 0) see_how_far_held_out_ones_are(before, clock);
 }
 
 void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& clock) {
@@ -141,7 +144,20 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& 
   optimal_seconds += clock.finish("lights_beside_surfaces", {{"lights", double(beside_surfaces_.size())}});
   // Without noise a fit errs by transport alone, and so do those that are held out.
   if (!beside_surfaces_.empty() || basis->published.noise == 0 || clock.out_of_time()) return;
-  held_out_ = before != nullptr && before->held_out_ ? before->held_out_ : hold_out(*basis, problem, cache.settings);
+  share_or_hold_out(before, clock);
+}
+
+// Without noise they do not tell how many lights there are, but what a fit to others is worth.
+void RegionSearch::see_how_far_held_out_ones_are(const RegionSearch* before, StageClock& clock) {
+  const bool tells = found_.beside_surfaces.empty() && !found_.out_of_time && found_.error > kCloseEnough;
+  if (!tells || clock.out_of_time()) return;
+  share_or_hold_out(before, clock);
+  found_.held_out = HeldOutResiduals(*held_out_, 0).of(found_.others);
+}
+
+void RegionSearch::share_or_hold_out(const RegionSearch* before, StageClock& clock) {
+  const bool there = before != nullptr && before->held_out_;
+  held_out_ = there ? before->held_out_ : hold_out(*basis, problem, transport.cache.settings);
   clock.finish_transport("held_out", {});
 }
 
@@ -175,17 +191,23 @@ bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
          (fewer && found_.error < std::max(kCloseEnough, kAsClose * other.found_.error));
 }
 
-double RegionSearch::part_missed() const {
-  return found_.held_out.size() > 0 ? held_out_->part_missed(found_.held_out) : 0;
+double RegionSearch::missed() const {
+  if (found_.held_out.size() == 0) return 0;
+  return basis->published.noise > 0 ? held_out_->part_missed(found_.held_out)
+                                    : held_out_->relative_error(found_.held_out);
+}
+
+double RegionSearch::most_missed() const {
+  if (!(basis->published.noise > 0)) return kFartherElsewhere * found_.error;
+  return found_.times_noise > kKnee ? kMisledAndFar : kMisled;
 }
 
 bool RegionSearch::was_misled() const {
-  const double most = found_.times_noise > kKnee ? kMisledAndFar : kMisled;
-  return !found_.out_of_time && basis->options.earlier.empty() && part_missed() > most;
+  return !found_.out_of_time && basis->options.earlier.empty() && missed() > most_missed();
 }
 
 bool RegionSearch::misses_less_than(const RegionSearch& other) const {
-  return found_.held_out.size() > 0 && part_missed() < other.part_missed();
+  return found_.held_out.size() > 0 && missed() < other.missed();
 }
 
 Optimum RegionSearch::conclude(StageClock& clock) const {

@@ -55,7 +55,11 @@ class RegionSearch {
 
  private:
   JointSearch joint_search() const;
-  double part_missed() const;
+  // Of what held-out receivers want: with noise the part of the brightness that is missed, without it the error.
+  double missed() const;
+  double most_missed() const;
+  void see_how_far_held_out_ones_are(const RegionSearch* before, StageClock& clock);
+  void share_or_hold_out(const RegionSearch* before, StageClock& clock);
   void look_beside_surfaces(const RegionSearch* before, StageClock& clock);
 
   Observations searched_;  // no receiver hides the light of all others

@@ -235,6 +235,7 @@ TEST_F(ConstrainedSolve, WhatNoLightCanKeepToIsNamed) {
   EXPECT_NE(error_of(ruled, options()).find("nowhere in the region is a place 50 m from all surfaces"),
             std::string::npos);
   ruled.places = {.light_distance = 5};
+  ruled.grid.region = default_region(corner_.tracer());
   EXPECT_NE(error_of(ruled, options(3)).find("3 lights 5 m apart find no place"), std::string::npos)
       << error_of(ruled, options(3));
 }

@@ -84,6 +84,20 @@ TEST(Solve, SearchesAgainByMoreVerticesWhereFewMisledIt) {
 }
 
 // The check, too, which takes longest where nothing is left to find.
+// What no light makes, such as a painted circle that ends sharply, is approached by lights that shine between a few
+// vertices.
+TEST(Solve, SearchesAgainByMoreVerticesWhereAFitToPaintIsFartherFromTheRest) {
+  const PaintedCorner corner;
+  Target target = corner.target(known_lights(1), 0);
+  for (std::size_t i = 0; i < target.weight.size(); ++i) {
+    const Vec3f p = target.receivers.samples[i].position;
+    if (length(p - Vec3f{1, 0, 3}) < 0.7F || length(p - Vec3f{0, 1.5F, 1}) < 0.6F) target.illumination[i] = {9, 7, 4};
+  }
+  SolveOptions few = quick();
+  few.important_vertices = 100;
+  EXPECT_EQ(solve(problem_of(corner, target, 0), few).important_vertices, 300);
+}
+
 TEST(Solve, ATimeLimitEndsAllOfItAndIsWhatIsSaid) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(2), 0);
