@@ -165,7 +165,7 @@ class Search {
   }
 
   const Eigen::VectorXd& held_out_residuals(Candidate& candidate) {
-    if (candidate.held_out.size() == 0) candidate.held_out = held_out_->of(candidate.lights);
+    if (candidate.held_out.size() == 0) candidate.held_out = held_out_->residuals(candidate.lights);
     return candidate.held_out;
   }
 
@@ -305,7 +305,7 @@ class Search {
   Clock::time_point start_;
   std::vector<Candidate> best_{1};  // by number of lights
   std::optional<KnownCorrections> corrections_;
-  std::optional<HeldOutResiduals> held_out_;
+  std::optional<HeldOutSets> held_out_;
   bool cuts_are_enough_ = false;  // larger ones than the best explain no more
   int refinements_ = 0;
   bool out_of_time_ = false;

@@ -16,8 +16,9 @@
 namespace chiaro::inverse {
 namespace {
 
+constexpr std::size_t kMany = 50000;       // receivers at most
 constexpr int kLeastSamples = 64;          // paths per receiver
-constexpr double kComparedPaths = 2e6;     // of all receivers, where sets of lights are only compared …
+constexpr double kComparedPaths = 2e6;     // of all receivers, where intensities are to be told roughly …
 constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
 constexpr double kNinety = 1.645;          // standard deviations to either side
 
@@ -104,9 +105,9 @@ struct ManyObservations {
   Observations observations;
 };
 
-ManyObservations observe_many(const SolveProblem& problem, std::size_t receivers, const SolveOptions& options,
+ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control) {
-  const ReceiverDraw draw = draw_evenly(problem.target, receivers);
+  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
   ManyObservations many{numerics::chosen_from(problem.target.receivers.samples, draw.chosen), {}};
   const int fixed_samples = verification_samples(options, many.samples.size());
   const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
@@ -117,28 +118,20 @@ ManyObservations observe_many(const SolveProblem& problem, std::size_t receivers
 
 }  // namespace
 
-std::vector<PlacedFit> refit_over_many(const SolveProblem& problem, const std::vector<renderer::Lights>& sets,
-                                       std::size_t receivers, const SolveOptions& options,
-                                       const renderer::Control& control) {
-  if (sets.empty()) return {};
-  const auto [samples, published] = observe_many(problem, receivers, options, control);
-  const Observations observations = weighted_by_objective(published, options.objective);
+std::vector<Eigen::Array3d> refit_over_many(const SolveProblem& problem, const renderer::Lights& lights,
+                                            const SolveOptions& options, const renderer::Control& control) {
+  const auto [samples, published] = observe_many(problem, options, control);
   const int paths = std::clamp(int(kComparedPaths / double(samples.size())), kLeastComparedSamples, kLeastSamples);
-  std::vector<PlacedFit> fits;
-  for (const renderer::Lights& lights : sets) {
-    const std::vector<Column> columns = unity_columns(problem, lights, samples, paths, options, control);
-    const IntensityFit fit = fit_intensities(observations, columns);
-    fits.push_back(
-        {fit.intensity, error_of(observations, columns, fit.intensity), error_of(published, columns, fit.intensity)});
-  }
-  return fits;
+  return fit_intensities(weighted_by_objective(published, options.objective),
+                         unity_columns(problem, lights, samples, paths, options, control))
+      .intensity;
 }
 
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock(options.time_limit);
   SolveResult result;
   check_lights_in_place(problem);
-  const auto [samples, published] = observe_many(problem, kManyReceivers, options, control);
+  const auto [samples, published] = observe_many(problem, options, control);
   const Observations observations = weighted_by_objective(published, options.objective);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
   const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);

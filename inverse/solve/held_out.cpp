@@ -42,6 +42,14 @@ std::vector<Column> HeldOut::indirect(const LightEstimates& lights) const {
   return columns;
 }
 
+double HeldOut::refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const {
+  std::vector<Column> columns;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    columns.push_back(response_.direct(lights[j].position) + *indirect[j]);
+  }
+  return refit_intensities(observations_, columns, lights);
+}
+
 Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const {
   Column left = -observations_.wanted;
   for (std::size_t j = 0; j < lights.size(); ++j) {
@@ -60,7 +68,7 @@ double HeldOut::part_missed(const Eigen::VectorXd& residuals) const {
   return missed > 0 ? missed / brightness.sum() : 0;
 }
 
-Eigen::VectorXd HeldOutResiduals::of(const LightEstimates& lights) {
+std::vector<const Column*> HeldOutSets::indirect(const LightEstimates& lights) {
   LightEstimates unknown;
   for (const LightEstimate& light : lights) {
     if (indirect_.find(light.position) == nullptr) unknown.push_back(light);
@@ -69,8 +77,14 @@ Eigen::VectorXd HeldOutResiduals::of(const LightEstimates& lights) {
   for (std::size_t j = 0; j < unknown.size(); ++j) indirect_.add(unknown[j].position, std::move(columns[j]));
   std::vector<const Column*> indirect;
   for (const LightEstimate& light : lights) indirect.push_back(&indirect_.find(light.position)->value);
-  return held_out_.residuals(lights, indirect);
+  return indirect;
 }
+
+Eigen::VectorXd HeldOutSets::residuals(const LightEstimates& lights) {
+  return held_out_.residuals(lights, indirect(lights));
+}
+
+double HeldOutSets::refit(LightEstimates& lights) { return held_out_.refit(lights, indirect(lights)); }
 
 bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double standard_errors) {
   const Eigen::VectorXd gain = before - after;

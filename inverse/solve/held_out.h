@@ -16,6 +16,8 @@ class HeldOut {
 
   // What each brings by bounces at 1 cd, computed there and not interpolated.
   std::vector<Column> indirect(const LightEstimates& lights) const;
+  // Gives the lights the intensities that come closest, within the observations' rules; (3.6) of what they leave.
+  double refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const;
   // Weighted, of each receiver. Their squares would be those of a few receivers beside lights.
   Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
   // (3.6) over these receivers.
@@ -31,15 +33,19 @@ class HeldOut {
   LightResponse response_;
 };
 
-// Residuals of the sets of one search: indirect light is computed once wherever several of their lights come to stand.
-class HeldOutResiduals {
+// The sets of one search: indirect light is computed once wherever several of their lights come to stand.
+class HeldOutSets {
  public:
   // near: metres to a place so near that indirect light hardly is another. Keeps a reference.
-  HeldOutResiduals(const HeldOut& held_out, double near) : held_out_(held_out), indirect_(near) {}
+  HeldOutSets(const HeldOut& held_out, double near) : held_out_(held_out), indirect_(near) {}
 
-  Eigen::VectorXd of(const LightEstimates& lights);
+  Eigen::VectorXd residuals(const LightEstimates& lights);
+  double refit(LightEstimates& lights);
 
  private:
+  // Until the next call.
+  std::vector<const Column*> indirect(const LightEstimates& lights);
+
   const HeldOut& held_out_;
   KnownPlaces<Column> indirect_;
 };

@@ -15,13 +15,12 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kFarFromTarget = 0.1;   // error of lights that do not stand where the target's stood …
-constexpr double kFarNoise = 2;          // … or so many times its noise
-constexpr double kWorthALight = 1.05;    // times the error of more lights, or less: they are too many
-constexpr std::size_t kOfLarger = 2000;  // receivers that tell the error of sets of more lights than are taken
-constexpr double kNegligible = 1e-3;     // contribution to the target's norm
-constexpr double kHardlySeen = 1e-2;     // the same, of a light that may stand anywhere
-constexpr double kSignificant = 10;      // times what noise alone makes of a light: transport errs, too
+constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood …
+constexpr double kFarNoise = 2;         // … or so many times its noise
+constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
+constexpr double kNegligible = 1e-3;    // contribution to the target's norm
+constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
+constexpr double kSignificant = 10;     // times what noise alone makes of a light: transport errs, too
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
@@ -77,46 +76,34 @@ struct RefittedLights {
   std::vector<LightSet> error_curve;
 };
 
-// With the intensities that come closest to the target at so many receivers.
-std::vector<PlacedFit> refit(const JointSearch& search, std::vector<LightEstimates>& sets, std::size_t receivers) {
-  std::vector<renderer::Lights> placed;
-  for (const LightEstimates& set : sets) placed.push_back(point_lights(set));
-  std::vector<PlacedFit> fits = refit_over_many(search.problem, placed, receivers, search.options, search.control);
-  for (std::size_t k = 0; k < sets.size(); ++k) {
-    for (std::size_t j = 0; j < sets[k].size(); ++j) sets[k][j].intensity = fits[k].intensity[j];
+// Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
+// important ones, and robust weights would not see it: all sets are refitted to others. Where no lights explain the
+// target those may also speak for a light that is none to all others, so that fewer will do.
+RefittedLights refitted_to_held_out(const HeldOut& held_out, LightEstimates lights, std::vector<LightSet> curve,
+                                    bool fewer_may_do) {
+  HeldOutSets sets(held_out, 0);
+  const double error = sets.refit(lights);
+  double least = error;
+  for (LightSet& set : curve) {
+    LightEstimates refitted = light_estimates(set.lights);
+    const double of_set = sets.refit(refitted);
+    const bool as_many = refitted.size() == lights.size();
+    set = as_many ? set_of(lights, error) : set_of(refitted, of_set);
+    if (refitted.size() < lights.size()) least = std::min(least, of_set);
   }
-  return fits;
+  const auto enough = [&](const LightSet& set) {
+    return set.lights.size() < lights.size() && set.relative_l2 <= kWorthALight * least;
+  };
+  const auto fewer = fewer_may_do ? std::find_if(curve.begin(), curve.end(), enough) : curve.end();
+  if (fewer != curve.end()) lights = light_estimates(fewer->lights);
+  return {std::move(lights), std::move(curve)};
 }
 
-// Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
-// important ones, and robust weights would not see it: all sets are refitted to more. Where no lights explain the
-// target those may also speak for a light that is none to all others, so that fewer will do.
-RefittedLights refitted_over_many(const JointSearch& search, const LightEstimates& lights,
-                                  const std::vector<LightEstimates>& sets, bool fewer_may_do, StageClock& clock) {
-  std::vector<LightEstimates> up_to_all, larger;
-  for (const LightEstimates& set : sets) {
-    if (!set.empty() && set.size() < lights.size()) up_to_all.push_back(set);
-    if (set.size() > lights.size()) larger.push_back(set);
-  }
-  up_to_all.push_back(lights);
-  const std::vector<PlacedFit> fits = refit(search, up_to_all, kManyReceivers);
-  const std::vector<PlacedFit> fits_of_larger = refit(search, larger, kOfLarger);
-
-  double least = fits.back().error;
-  for (const PlacedFit& fit : fits) least = std::min(least, fit.error);
-  const auto enough = [&](const PlacedFit& fit) { return fit.error <= kWorthALight * least; };
-  const std::size_t best =
-      fewer_may_do ? std::size_t(std::find_if(fits.begin(), fits.end(), enough) - fits.begin()) : fits.size() - 1;
-  RefittedLights refitted{up_to_all[best], {}};
-  for (std::size_t k = 0; k < fits.size(); ++k) {
-    refitted.error_curve.push_back(set_of(up_to_all[k], fits[k].relative_l2));
-  }
-  for (std::size_t k = 0; k < larger.size(); ++k) {
-    refitted.error_curve.push_back(set_of(larger[k], fits_of_larger[k].relative_l2));
-  }
-  clock.finish("intensities_over_many",
-               {{"lights", double(refitted.lights.size())}, {"relative_l2", fits[best].error}});
-  return refitted;
+// Without receivers that were held out the lights nearly explain the target.
+LightEstimates refitted_over_many(const JointSearch& search, LightEstimates lights) {
+  const auto intensity = refit_over_many(search.problem, point_lights(lights), search.options, search.control);
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].intensity = intensity[j];
+  return lights;
 }
 
 // A light that would do nothing is the half of another that stands where it stood.
@@ -223,9 +210,14 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   const bool far = found.beside_surfaces.empty() && found.error > far_from_target;
   const LightEstimates as_found = joined(found.beside_surfaces, found.others);
   const bool refitted = !as_found.empty() && !found.out_of_time && !explained && (far || tied);
-  auto [all, error_curve] =
-      refitted ? refitted_over_many(search, as_found, found.sets, far && options.exact_lights == 0, clock)
-               : RefittedLights{as_found, found.error_curve};
+  RefittedLights at_last{as_found, found.error_curve};
+  if (refitted && search.held_out != nullptr) {
+    at_last = refitted_to_held_out(*search.held_out, as_found, found.error_curve, far && options.exact_lights == 0);
+  } else if (refitted) {
+    at_last.lights = refitted_over_many(search, as_found);
+  }
+  if (refitted) clock.finish("intensities_over_many", {{"lights", double(at_last.lights.size())}});
+  auto& [all, error_curve] = at_last;
   const bool may_share_places = !(search.problem.places.light_distance > 0);
   if (may_share_places) let_none_be_worse_than_fewer(error_curve);
   const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;

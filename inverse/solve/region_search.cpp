@@ -35,6 +35,7 @@ std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolvePro
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control);
   Observations observations = with_noise(observe_target(problem.target, draw, fixed), problem.target, draw.chosen);
   if (observations.noise == 0) observations = weighted_by_objective(observations, basis.options.objective);
+  observations.rules = problem.intensities;
   return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), settings);
 }
 
@@ -152,7 +153,7 @@ void RegionSearch::see_how_far_held_out_ones_are(const RegionSearch* before, Sta
   const bool tells = found_.beside_surfaces.empty() && !found_.out_of_time && found_.error > kCloseEnough;
   if (!tells || clock.out_of_time()) return;
   share_or_hold_out(before, clock);
-  found_.held_out = HeldOutResiduals(*held_out_, 0).of(found_.others);
+  found_.held_out = HeldOutSets(*held_out_, 0).residuals(found_.others);
 }
 
 void RegionSearch::share_or_hold_out(const RegionSearch* before, StageClock& clock) {

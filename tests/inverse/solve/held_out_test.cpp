@@ -38,7 +38,7 @@ class HeldOutRoom : public ::testing::Test {
   }
 
   // As if no others had been asked for.
-  Eigen::VectorXd residuals(const LightEstimates& lights) const { return HeldOutResiduals(*held_out_, 0).of(lights); }
+  Eigen::VectorXd residuals(const LightEstimates& lights) const { return HeldOutSets(*held_out_, 0).residuals(lights); }
 
   renderer::Scene scene_;
   std::optional<renderer::RayTracer> tracer_;
@@ -93,19 +93,19 @@ TEST(HeldOut, MissesWhatIsLargeAndNoNoise) {
 }
 
 TEST_F(HeldOutRoom, ResidualsOfASearchAreThose) {
-  HeldOutResiduals of_search(*held_out_, 0.01);
+  HeldOutSets of_search(*held_out_, 0.01);
   const Eigen::VectorXd expected = residuals(lights_);
-  EXPECT_LT((of_search.of(lights_) - expected).norm(), 1e-5 * expected.norm());
-  EXPECT_EQ(of_search.of(lights_), of_search.of(lights_));
+  EXPECT_LT((of_search.residuals(lights_) - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_EQ(of_search.residuals(lights_), of_search.residuals(lights_));
   // Direct light and intensities are always those of now; indirect light hardly changes within a centimetre.
   LightEstimates moved = lights_;
   moved[0].position.x() += 0.005;
   moved[1].intensity *= 1.2;
   const Eigen::VectorXd near = residuals(moved);
-  EXPECT_LT((of_search.of(moved) - near).norm(), 0.02 * near.norm());
+  EXPECT_LT((of_search.residuals(moved) - near).norm(), 0.02 * near.norm());
   EXPECT_GT((near - expected).norm(), 0.05 * near.norm());
   moved[0].position.x() += 0.5;
-  EXPECT_LT((of_search.of(moved) - residuals(moved)).norm(), 1e-5 * residuals(moved).norm());
+  EXPECT_LT((of_search.residuals(moved) - residuals(moved)).norm(), 1e-5 * residuals(moved).norm());
 }
 
 TEST(HeldOut, NoiseAloneIsHardlyEverClear) {
