@@ -21,9 +21,10 @@ TransportCache cache_of_nothing(std::size_t receivers) {
 }  // namespace
 
 HeldOut::HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
-                 Observations observations, const BakeSettings& settings)
+                 Observations observations, Observations judged, const BakeSettings& settings)
     : tracer_(tracer),
       observations_(std::move(observations)),
+      judged_(std::move(judged)),
       gather_(make_gather_operator(tracer, receivers,
                                    {.samples = settings.samples,
                                     .points_per_sample = kPointsPerSample,
@@ -42,12 +43,19 @@ std::vector<Column> HeldOut::indirect(const LightEstimates& lights) const {
   return columns;
 }
 
-double HeldOut::refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const {
+HeldOutFit HeldOut::refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const {
   std::vector<Column> columns;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     columns.push_back(response_.direct(lights[j].position) + *indirect[j]);
   }
-  return refit_intensities(observations_, columns, lights);
+  const double error = refit_intensities(judged_, columns, lights);
+  return {error, relative_error(observations_, total_illumination(columns, lights, observations_.wanted.rows()))};
+}
+
+double HeldOut::error(const Eigen::VectorXd& residuals) const {
+  const Eigen::ArrayXd weight = observations_.sqrt_weight.array();
+  const Eigen::ArrayXd by_objective = (weight > 0).select(judged_.sqrt_weight.array() / weight, 0);
+  return (by_objective * residuals.array()).matrix().norm() / judged_.target_norm;
 }
 
 Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const {
@@ -84,7 +92,7 @@ Eigen::VectorXd HeldOutSets::residuals(const LightEstimates& lights) {
   return held_out_.residuals(lights, indirect(lights));
 }
 
-double HeldOutSets::refit(LightEstimates& lights) { return held_out_.refit(lights, indirect(lights)); }
+HeldOutFit HeldOutSets::refit(LightEstimates& lights) { return held_out_.refit(lights, indirect(lights)); }
 
 bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double standard_errors) {
   const Eigen::VectorXd gain = before - after;

@@ -5,29 +5,35 @@
 
 namespace chiaro::inverse {
 
+struct HeldOutFit {
+  double error;        // by the objective
+  double relative_l2;  // (3.6)
+};
+
 // Receivers that lights are not fitted to, which tell whether a further light is there or fits noise.
 class HeldOut {
  public:
-  // Keeps a reference to the tracer. settings: of the bake.
+  // Keeps a reference to the tracer. judged: the same observations, as the objective weighs them. settings: of the
+  // bake.
   HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
-          Observations observations, const BakeSettings& settings);
+          Observations observations, Observations judged, const BakeSettings& settings);
   HeldOut(const HeldOut&) = delete;
   HeldOut& operator=(const HeldOut&) = delete;
 
   // What each brings by bounces at 1 cd, computed there and not interpolated.
   std::vector<Column> indirect(const LightEstimates& lights) const;
-  // Gives the lights the intensities that come closest, within the observations' rules; (3.6) of what they leave.
-  double refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const;
+  // Gives the lights the intensities that come closest, within the observations' rules.
+  HeldOutFit refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const;
   // Weighted, of each receiver. Their squares would be those of a few receivers beside lights.
   Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
-  // (3.6) over these receivers.
-  double relative_error(const Eigen::VectorXd& residuals) const { return residuals.norm() / observations_.target_norm; }
+  // By the objective.
+  double error(const Eigen::VectorXd& residuals) const;
   // Of the target's brightness, the part on receivers of which these residuals are a large part, and not by noise.
   double part_missed(const Eigen::VectorXd& residuals) const;
 
  private:
   const renderer::RayTracer& tracer_;
-  Observations observations_;
+  Observations observations_, judged_;
   GatherOperator gather_;
   TransportCache nothing_;
   LightResponse response_;
@@ -40,7 +46,7 @@ class HeldOutSets {
   HeldOutSets(const HeldOut& held_out, double near) : held_out_(held_out), indirect_(near) {}
 
   Eigen::VectorXd residuals(const LightEstimates& lights);
-  double refit(LightEstimates& lights);
+  HeldOutFit refit(LightEstimates& lights);
 
  private:
   // Until the next call.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "inverse/solve/choose_light_count.h"
@@ -82,20 +81,20 @@ struct RefittedLights {
 RefittedLights refitted_to_held_out(const HeldOut& held_out, LightEstimates lights, std::vector<LightSet> curve,
                                     bool fewer_may_do) {
   HeldOutSets sets(held_out, 0);
-  const double error = sets.refit(lights);
-  double least = error;
+  const HeldOutFit all = sets.refit(lights);
+  double least = all.error;
+  std::vector<std::pair<LightEstimates, double>> fewer;
   for (LightSet& set : curve) {
     LightEstimates refitted = light_estimates(set.lights);
-    const double of_set = sets.refit(refitted);
-    const bool as_many = refitted.size() == lights.size();
-    set = as_many ? set_of(lights, error) : set_of(refitted, of_set);
-    if (refitted.size() < lights.size()) least = std::min(least, of_set);
+    const HeldOutFit fit = sets.refit(refitted);
+    set = refitted.size() == lights.size() ? set_of(lights, all.relative_l2) : set_of(refitted, fit.relative_l2);
+    if (!fewer_may_do || refitted.size() >= lights.size()) continue;
+    least = std::min(least, fit.error);
+    fewer.emplace_back(std::move(refitted), fit.error);
   }
-  const auto enough = [&](const LightSet& set) {
-    return set.lights.size() < lights.size() && set.relative_l2 <= kWorthALight * least;
-  };
-  const auto fewer = fewer_may_do ? std::find_if(curve.begin(), curve.end(), enough) : curve.end();
-  if (fewer != curve.end()) lights = light_estimates(fewer->lights);
+  for (auto& [set, error] : fewer) {
+    if (error <= kWorthALight * least) return {std::move(set), std::move(curve)};
+  }
   return {std::move(lights), std::move(curve)};
 }
 

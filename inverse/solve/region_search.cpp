@@ -34,9 +34,9 @@ std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolvePro
   settings.seed = fresh_seed(basis.options.seed, 5);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control);
   Observations observations = with_noise(observe_target(problem.target, draw, fixed), problem.target, draw.chosen);
-  if (observations.noise == 0) observations = weighted_by_objective(observations, basis.options.objective);
   observations.rules = problem.intensities;
-  return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), settings);
+  Observations judged = weighted_by_objective(observations, basis.options.objective);
+  return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), std::move(judged), settings);
 }
 
 AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid) {
@@ -194,8 +194,7 @@ bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
 
 double RegionSearch::missed() const {
   if (found_.held_out.size() == 0) return 0;
-  return basis->published.noise > 0 ? held_out_->part_missed(found_.held_out)
-                                    : held_out_->relative_error(found_.held_out);
+  return basis->published.noise > 0 ? held_out_->part_missed(found_.held_out) : held_out_->error(found_.held_out);
 }
 
 double RegionSearch::most_missed() const {

@@ -24,7 +24,7 @@ enum class SolveMethod : std::uint8_t {
 // The best set of its size that a solve came by.
 struct LightSet {
   std::vector<renderer::PointLight> lights;
-  double relative_l2 = 0;  // (3.6) over the important vertices
+  double relative_l2 = 0;  // (3.6) over the important vertices, or over others where they were refitted to those
 };
 
 struct SolveOptions {

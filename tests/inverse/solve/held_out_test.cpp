@@ -34,7 +34,8 @@ class HeldOutRoom : public ::testing::Test {
     const auto traced = trace_illumination(*tracer_, receivers_, lights, {512, -1, 9, false}).value;
     Column target(Eigen::Index(traced.size()), 3);
     for (std::size_t i = 0; i < traced.size(); ++i) target.row(Eigen::Index(i)) = to_eigen(traced[i]).transpose();
-    held_out_.emplace(*tracer_, receivers_, observations_of(target), settings_);
+    observations_ = observations_of(target);
+    held_out_.emplace(*tracer_, receivers_, observations_, observations_, settings_);
   }
 
   // As if no others had been asked for.
@@ -46,6 +47,7 @@ class HeldOutRoom : public ::testing::Test {
   const BakeSettings settings_{.samples = 256, .bounces = -1, .seed = 3, .materials = "gltf"};
   // The second is dim.
   const LightEstimates lights_{{{1.2, 2.1, 1.5}, {10, 8, 6}}, {{3, 1, 2.6}, {0.3, 0.5, 0.7}}};
+  Observations observations_;
   std::optional<HeldOut> held_out_;
 };
 
@@ -74,6 +76,26 @@ TEST_F(HeldOutRoom, TellsWhatPartOfTheTargetLightsMiss) {
   EXPECT_GT(held_out_->part_missed(residuals({lights_[1]})), 0.5);
 }
 
+TEST_F(HeldOutRoom, RefitsIntensitiesAndTellsTheErrorOfTheObjectiveAndThePublishedOne) {
+  LightEstimates refitted = lights_;
+  for (LightEstimate& light : refitted) light.intensity.setOnes();
+  HeldOutSets sets(*held_out_, 0);
+  const HeldOutFit fit = sets.refit(refitted);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_LT((refitted[j].intensity / lights_[j].intensity - 1).abs().maxCoeff(), j == 0 ? 0.005 : 0.05);
+  }
+  EXPECT_NEAR(fit.relative_l2, residuals(refitted).norm() / residuals({}).norm(), 1e-6);
+  EXPECT_NEAR(fit.error, held_out_->error(residuals(refitted)), 1e-6);
+  // An objective that looks at the first half alone.
+  Observations half = observations_;
+  half.sqrt_weight.tail(half.sqrt_weight.size() / 2).setZero();
+  half.measure_target();
+  const HeldOut by_half(*tracer_, receivers_, observations_, half, settings_);
+  const Eigen::VectorXd left = residuals({lights_[0]});
+  const auto first = left.size() - left.size() / 2;
+  EXPECT_NEAR(by_half.error(left), left.head(first).norm() / half.target_norm, 1e-12);
+}
+
 TEST(HeldOut, MissesWhatIsLargeAndNoNoise) {
   renderer::Scene scene;
   test::add_mesh(scene, test::room({4, 3, 4}, 2), test::lambert({0.6F, 0.5F, 0.4F}), "room");
@@ -84,7 +106,7 @@ TEST(HeldOut, MissesWhatIsLargeAndNoNoise) {
   Observations observations = observations_of(Column::Constant(count, 3, 1 / std::sqrt(3.0)));
   observations.standard_error.head(half).setConstant(0.1);
   observations.standard_error.tail(count - half).setConstant(0.01);
-  const HeldOut held_out(tracer, receivers, observations,
+  const HeldOut held_out(tracer, receivers, observations, observations,
                          {.samples = 16, .bounces = 0, .seed = 3, .materials = "gltf"});
   const auto missed = [&](double residual) { return held_out.part_missed(Eigen::VectorXd::Constant(count, residual)); };
   EXPECT_EQ(missed(0.25), 0);
