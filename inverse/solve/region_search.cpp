@@ -7,6 +7,7 @@
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/optimize_simplex.h"
+#include "inverse/solve/polish_lights.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/traced_light.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -200,6 +201,13 @@ double RegionSearch::missed() const {
 double RegionSearch::most_missed() const {
   if (!(basis->published.noise > 0)) return kFartherElsewhere * found_.error;
   return found_.times_noise > kKnee ? kMisledAndFar : kMisled;
+}
+
+bool RegionSearch::brings_closer() const {
+  const Observations& published = basis->published;
+  const double without = relative_error(published, Column::Zero(published.wanted.rows(), 3));
+  if (!(without <= kExplained * published.noise) || found_.held_out.size() == 0) return true;
+  return clearly_smaller(HeldOutSets(*held_out_, 0).residuals({}), found_.held_out);
 }
 
 bool RegionSearch::was_misled() const {

@@ -34,6 +34,8 @@ class RegionSearch {
   // Of two searches, the one that came closer, or as close with fewer lights.
   bool is_clearly_better_than(const RegionSearch& other) const;
 
+  // False where what shines already leaves no more than noise, and held-out receivers see no more in the lights found.
+  bool brings_closer() const;
   // The lights found miss a part of what receivers want that they were not fitted to.
   bool was_misled() const;
   // Of two searches with other important vertices.

@@ -59,13 +59,17 @@ std::vector<std::size_t> all_indices(std::size_t count) {
                                          where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)));
 }
 
+[[noreturn]] void none_brings_closer(const SolveProblem& problem) {
+  no_light_possible(problem, fmt::format("none{} brings what shines already closer to the target",
+                                         problem.intensities.any() ? " that keeps to the constraints" : ""));
+}
+
 // They light nothing that is painted where they stand, or had better not.
 [[noreturn]] void all_dark(const SolveProblem& problem, const LightResponse& response, const LightEstimates& found) {
   const double diagonal = double(problem.tracer.bounds().diagonal()), at_diagonal = kLights / (diagonal * diagonal);
   for (const Column& column : evaluate_columns(response, found, Evaluation::kTracedVisibility)) {
     if (column.mean() < at_diagonal) continue;
-    no_light_possible(problem, fmt::format("none{} brings what shines already closer to the target",
-                                           problem.intensities.any() ? " that keeps to the constraints" : ""));
+    none_brings_closer(problem);
   }
   nothing_lit(problem);
 }
@@ -256,6 +260,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   if (!problem.lights_in_place.empty()) return fit_in_place(problem, options, control);
 
   const std::unique_ptr<RegionSearch> searched = search(problem, options, control, clock, result);
+  if (options.exact_lights == 0 && !searched->brings_closer()) none_brings_closer(problem);
   const Importance& importance = searched->basis->importance;
   result.important_vertices = int(importance.chosen.size());
   const double before = clock.total();
