@@ -111,7 +111,7 @@ ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& o
   ManyObservations many{numerics::chosen_from(problem.target.receivers.samples, draw.chosen), {}};
   const int fixed_samples = verification_samples(options, many.samples.size());
   const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
-  many.observations = observe_target(problem.target, draw, fixed);
+  many.observations = weighted_by_objective(observe_target(problem.target, draw, fixed), options.objective);
   many.observations.rules = problem.intensities;
   return many;
 }
@@ -120,19 +120,16 @@ ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& o
 
 std::vector<Eigen::Array3d> refit_over_many(const SolveProblem& problem, const renderer::Lights& lights,
                                             const SolveOptions& options, const renderer::Control& control) {
-  const auto [samples, published] = observe_many(problem, options, control);
+  const auto [samples, observations] = observe_many(problem, options, control);
   const int paths = std::clamp(int(kComparedPaths / double(samples.size())), kLeastComparedSamples, kLeastSamples);
-  return fit_intensities(weighted_by_objective(published, options.objective),
-                         unity_columns(problem, lights, samples, paths, options, control))
-      .intensity;
+  return fit_intensities(observations, unity_columns(problem, lights, samples, paths, options, control)).intensity;
 }
 
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
   StageClock clock(options.time_limit);
   SolveResult result;
   check_lights_in_place(problem);
-  const auto [samples, published] = observe_many(problem, options, control);
-  const Observations observations = weighted_by_objective(published, options.objective);
+  const auto [samples, observations] = observe_many(problem, options, control);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
   const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);
   result.cache_seconds = clock.finish_transport("traced_lights", {{"lights", double(columns.size())}});

@@ -26,12 +26,6 @@ LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   return some;
 }
 
-LightSet set_of(const LightEstimates& lights, double relative_l2) {
-  LightSet set{{}, relative_l2};
-  for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
-  return set;
-}
-
 // beside_surfaces: in all of them.
 std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
                                      const LightEstimates& beside_surfaces, const LightCountResult& count) {
@@ -128,6 +122,12 @@ void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
 }
 
 }  // namespace
+
+LightSet set_of(const LightEstimates& lights, double relative_l2) {
+  LightSet set{{}, relative_l2};
+  for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
+  return set;
+}
 
 int most_lights(const SolveOptions& options) {
   return options.exact_lights > 0 ? options.exact_lights : options.max_lights;

@@ -52,6 +52,8 @@ struct JointLights {
 // They leave nothing but noise, or nearly so.
 bool is_explained(const JointLights& found);
 
+LightSet set_of(const LightEstimates& lights, double relative_l2);
+
 // At most, or exactly where so many are asked for.
 int most_lights(const SolveOptions& options);
 

@@ -143,8 +143,7 @@ void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<
     return set.lights.size() <= lights.size() && set.relative_l2 <= relative_l2;
   };
   if (std::any_of(curve.begin(), curve.end(), as_good)) return;
-  LightSet set{{}, relative_l2};
-  for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
+  LightSet set = set_of(lights, relative_l2);
   const auto at = std::find_if(curve.begin(), curve.end(),
                                [&](const LightSet& other) { return other.lights.size() >= set.lights.size(); });
   if (at != curve.end() && at->lights.size() == set.lights.size()) {

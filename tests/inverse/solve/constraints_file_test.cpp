@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "inverse/solve/light_constraints.h"
-#include "renderer/core/error.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
@@ -13,12 +13,7 @@ LightConstraints load_text(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    load_text(text);
-  } catch (const renderer::Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_of([&] { load_text(text); });
 }
 
 TEST(ConstraintsFile, ReadsEveryField) {

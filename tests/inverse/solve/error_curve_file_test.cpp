@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/core/error.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
@@ -14,12 +14,7 @@ std::vector<LightSet> load_text(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    load_text(text);
-  } catch (const renderer::Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_of([&] { load_text(text); });
 }
 
 TEST(ErrorCurveFile, HasTheLightsOfEverySet) {

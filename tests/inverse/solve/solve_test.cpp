@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "inverse/transport/eigen_vectors.h"
-#include "renderer/core/error.h"
 #include "renderer/core/world_limits.h"
 #include "tests/inverse/solve/painted_corner.h"
+#include "tests/support/error_of.h"
 #include "tests/support/save_transport_cache.h"
 #include "tests/support/temporary_folder.h"
 
@@ -15,7 +15,6 @@ namespace chiaro::inverse {
 namespace {
 
 using Eigen::Vector3d;
-using renderer::Error;
 using tests::bake_settings;
 using tests::farthest_from;
 using tests::known_lights;
@@ -46,12 +45,7 @@ std::vector<Vector3d> positions_of(const SolveResult& result) {
 
 // The text of the Error that a solve throws; empty where it throws none.
 std::string error_of(const SolveProblem& problem, const SolveOptions& options) {
-  try {
-    solve(problem, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return test::error_of([&] { solve(problem, options); });
 }
 
 void expect_said(const std::string& text, const std::string& part) {

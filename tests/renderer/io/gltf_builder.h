@@ -7,13 +7,14 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "renderer/core/error.h"
 #include "renderer/io/gltf_container.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::renderer::tests {
 
 using nlohmann::ordered_json;
+using test::error_of;
 using test::TemporaryFolder;
 
 template <class T>
@@ -48,16 +49,5 @@ struct GltfBuilder {
 
 // One triangle of area 1/2 in the plane z = 0, shown by one node.
 GltfBuilder triangle_scene();
-
-// The message of the Error that `action` throws; empty where it throws none.
-template <class Action>
-std::string error_of(const Action& action) {
-  try {
-    action();
-  } catch (const renderer::Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 }  // namespace chiaro::renderer::tests
