@@ -9,7 +9,7 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kSamplesFactor = 4;     // gather rays per receiver, over those of the bake
+constexpr int kSamplesFactor = 2;     // gather rays per receiver, over those of the bake
 constexpr int kPointsPerSample = 16;  // gather points over rays
 constexpr int kPathsPerPoint = 16, kRaysPerPoint = 32;
 constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …

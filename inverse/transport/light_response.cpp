@@ -60,7 +60,8 @@ LightResponse::LightResponse(const renderer::RayTracer& tracer, std::vector<Surf
       cache_(cache),
       interpolation_(tracer, cache.grid),
       places_(std::move(places)),
-      near_places_(lights_near(cache.grid, places_)) {
+      near_places_(lights_near(cache.grid, places_)),
+      recent_visibility_(std::make_shared<RecentVisibility>(receivers_.size())) {
   CHIARO_CHECK(cache.receiver_count == receivers_.size());
 }
 
@@ -72,19 +73,28 @@ std::vector<Vector3d> LightResponse::places_near_grid_lights() const {
   return places;
 }
 
-std::vector<double> LightResponse::visibility(const Vector3d& position, Evaluation evaluation,
-                                              const std::vector<GridWeight>& weights) const {
-  std::vector<double> visible(receivers_.size(), 0);
+Visibility LightResponse::visibility(const Vector3d& position, Evaluation evaluation,
+                                     const std::vector<GridWeight>& weights) const {
   const Vec3f light = to_vec3f(position);
-  if (evaluation != Evaluation::kInterpolated) {
-    constexpr std::size_t kBlock = 1024;
-    renderer::parallel_for((receivers_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-      for (std::size_t i = block * kBlock; i < std::min(receivers_.size(), (block + 1) * kBlock); ++i) {
-        visible[i] = double(visible_part(tracer_, receivers_[i], light));
-      }
-    });
-    return visible;
-  }
+  if (evaluation != Evaluation::kInterpolated) return traced_visibility(light);
+  return std::make_shared<const std::vector<double>>(interpolated_visibility(light, weights));
+}
+
+Visibility LightResponse::traced_visibility(Vec3f light) const {
+  if (Visibility known = recent_visibility_->find(light)) return known;
+  auto visible = std::make_shared<std::vector<double>>(receivers_.size());
+  constexpr std::size_t kBlock = 1024;
+  renderer::parallel_for((receivers_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(receivers_.size(), (block + 1) * kBlock); ++i) {
+      (*visible)[i] = double(visible_part(tracer_, receivers_[i], light));
+    }
+  });
+  recent_visibility_->add(light, visible);
+  return visible;
+}
+
+std::vector<double> LightResponse::interpolated_visibility(Vec3f light, const std::vector<GridWeight>& weights) const {
+  std::vector<double> visible(receivers_.size(), 0);
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     const SurfaceSample& at = receivers_[i];
     if (dot(light - at.position, at.normal) <= 0) continue;
@@ -108,7 +118,8 @@ ColumnWithGradient LightResponse::gathered_with_gradient(const UnityLight& light
 
 Column LightResponse::exact(const UnityLight& light) const {
   Column column = column_of(indirect_illumination(tracer_, *gather_, light), 0);
-  const std::vector<double> visible = visibility(light.position, Evaluation::kExact, {});
+  const Visibility seen = visibility(light.position, Evaluation::kExact, {});
+  const std::vector<double>& visible = *seen;
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
     if (visible[i] > 0) column.row(Eigen::Index(i)).array() += unoccluded_term(receivers_[i], light).value;
   }
@@ -151,7 +162,8 @@ ColumnWithGradient LightResponse::evaluate_with_gradient(const UnityLight& light
   check_kind(light, evaluation, gather_);
   const bool exact = evaluation == Evaluation::kExact;
   const std::vector<GridWeight> weights = exact ? std::vector<GridWeight>() : interpolation_.weights(light.position);
-  const std::vector<double> visible = visibility(light.position, evaluation, weights);
+  const Visibility seen = visibility(light.position, evaluation, weights);
+  const std::vector<double>& visible = *seen;
   ColumnWithGradient column = exact ? gathered_with_gradient(light) : indirect_with_gradient(weights);
   Eigen::ArrayX4d direct = Eigen::ArrayX4d::Zero(Eigen::Index(receivers_.size()), 4);  // value, derivatives
   for (std::size_t i = 0; i < receivers_.size(); ++i) {
@@ -179,7 +191,7 @@ void LightResponse::add_direct(const Vector3d& position, const std::vector<doubl
 
 Column LightResponse::direct(const Vector3d& position) const {
   Column column = Column::Zero(Eigen::Index(receivers_.size()), 3);
-  add_direct(position, visibility(position, Evaluation::kTracedVisibility, {}), column);
+  add_direct(position, *visibility(position, Evaluation::kTracedVisibility, {}), column);
   return column;
 }
 
@@ -196,7 +208,7 @@ Column LightResponse::evaluate(const UnityLight& light, Evaluation evaluation) c
   if (evaluation == Evaluation::kExact) return exact(light);
   const std::vector<GridWeight> weights = interpolation_.weights(light.position);
   Column column = indirect(weights);
-  add_direct(light.position, visibility(light.position, evaluation, weights), column);
+  add_direct(light.position, *visibility(light.position, evaluation, weights), column);
   return column;
 }
 

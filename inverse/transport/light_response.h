@@ -11,6 +11,7 @@
 #include "inverse/transport/allowed_places.h"
 #include "inverse/transport/gather_operator.h"
 #include "inverse/transport/grid_interpolation.h"
+#include "inverse/transport/recent_visibility.h"
 #include "inverse/transport/transport_cache.h"
 
 namespace chiaro::inverse {
@@ -69,8 +70,10 @@ class LightResponse {
   ColumnWithGradient gathered_with_gradient(const UnityLight& light) const;
   Column exact(const UnityLight& light) const;
   void add_direct(const Eigen::Vector3d& position, const std::vector<double>& visible, Column& column) const;
-  std::vector<double> visibility(const Eigen::Vector3d& position, Evaluation evaluation,
-                                 const std::vector<GridWeight>& weights) const;
+  Visibility visibility(const Eigen::Vector3d& position, Evaluation evaluation,
+                        const std::vector<GridWeight>& weights) const;
+  Visibility traced_visibility(Vec3f light) const;
+  std::vector<double> interpolated_visibility(Vec3f light, const std::vector<GridWeight>& weights) const;
 
   const renderer::RayTracer& tracer_;
   std::vector<renderer::SurfaceSample> receivers_;
@@ -79,6 +82,7 @@ class LightResponse {
   const GatherOperator* gather_ = nullptr;
   AllowedPlaces places_;
   std::vector<std::size_t> near_places_;
+  std::shared_ptr<RecentVisibility> recent_visibility_;  // of the receivers
 };
 
 }  // namespace chiaro::inverse
