@@ -80,6 +80,7 @@ int run_solve(SolveCommand options) {
     solving.earlier_file = options.from;
   }
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
+  session.stop_if_interrupted();
   save_found_lights(options.scene, result, options.output, output_scene_options(options.choices));
   print_summary(session, options, wanted, result);
   return kDone;

@@ -28,7 +28,10 @@ inverse::Objective parse_objective(const std::string& text) {
 
 void parse_importance_weights(const std::string& text, inverse::SolveOptions& solve) {
   const std::vector<double> weights = parse_numbers(text, 2, kNotNegative);
-  if (weights[0] + weights[1] <= 0) throw UsageError(fmt::format("'{}' (expected one above 0)", text));
+  constexpr double kMost = 1e9;
+  if (weights[0] + weights[1] <= 0 || weights[0] > kMost || weights[1] > kMost) {
+    throw UsageError(fmt::format("'{}' (expected one above 0, and none above {:g})", text, kMost));
+  }
   solve.geometry_weight = weights[0];
   solve.illumination_weight = weights[1];
 }

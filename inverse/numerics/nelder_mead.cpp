@@ -140,7 +140,7 @@ bool descend(Vertex& best, Objective& objective, double scale, const NelderMeadO
   const Coefficients coefficients(double(best.x.size()));
   Simplex simplex = make_simplex(objective, best, scale);
   bool converged = has_converged(simplex, objective, options);
-  while (!converged && objective.evaluations_left > 0) {
+  while (!converged && objective.evaluations_left > 0 && !(options.stop && options.stop())) {
     improve(simplex, objective, coefficients);
     converged = has_converged(simplex, objective, options);
   }

@@ -12,6 +12,7 @@ struct NelderMeadOptions {
   double value_tolerance = 1e-9;      // stop when f(worst) − f(best) ≤ value_tolerance × (|f(best)| + 1e-30) …
   double parameter_tolerance = 1e-6;  // … and every vertex is within this of the best, relative to `step`
   bool restart = true;                // once, around the best, with a tenth of the steps
+  std::function<bool()> stop{};       // if any, asked before each step: whether it is to be the last
 };
 
 struct NelderMeadResult {

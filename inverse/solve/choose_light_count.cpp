@@ -12,6 +12,7 @@
 #include "inverse/solve/split_lights.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
+#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/core/seconds_since.h"
 
@@ -63,7 +64,7 @@ class Search {
       grow_again();
     }
     for (const LightEstimates& lights : options_.earlier) {
-      if (!out_of_time()) consider({lights});
+      if (best_.size() < 2 || !out_of_time()) consider({lights});
     }
     return result();
   }
@@ -95,6 +96,7 @@ class Search {
 
   // Refines them and keeps the best, if none of its size was better, without the lights that went out.
   void consider(std::vector<LightEstimates> starts, const JointRefinementOptions& how = kSearching) {
+    if (options_.control.stop_requested()) throw renderer::Interruption();
     if (starts.size() > kFinalists) starts = best_sets(refine_all(starts, kFirstSteps), kFinalists);
     std::vector<JointRefinement> refined = refine_all(starts, how);
     const auto best = std::min_element(refined.begin(), refined.end(),

@@ -9,6 +9,7 @@
 #include "inverse/solve/held_out.h"
 #include "inverse/solve/light_clusters.h"
 #include "inverse/solve/refine_joint.h"
+#include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 
@@ -19,8 +20,9 @@ struct LightCountOptions {
   int exact_lights = 0;  // 0: chosen here; fewer where all of them would not shine
   double seconds_left = std::numeric_limits<double>::infinity();  // some light is found even without any
   double transport_error = 0;                                     // of interpolated indirect light, relative
-  const ExactIndirect* exact = nullptr;   // sets are judged by it; absent: by interpolated light alone
-  const HeldOut* held_out = nullptr;      // tell how many lights there are; absent: the error of the fit does
+  const ExactIndirect* exact = nullptr;  // sets are judged by it; absent: by interpolated light alone
+  const HeldOut* held_out = nullptr;     // tell how many lights there are; absent: the error of the fit does
+  renderer::Control control{};
   std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for
 };
 

@@ -1,6 +1,9 @@
 #include "inverse/solve/error_curve_file.h"
 
+#include <fmt/format.h>
+
 #include "inverse/target/json_field.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -20,7 +23,11 @@ JsonField required_list(const JsonField& field, const std::string& name) {
 
 renderer::PointLight read_light(const JsonField& field) {
   renderer::PointLight light;
-  light.position = read_triple(required(field, "position"), {}, "three finite numbers, metres");
+  const JsonField position = required(field, "position");
+  light.position = read_triple(position, {}, "three finite numbers, metres");
+  if (!renderer::in_world(light.position)) {
+    position.fail("is too far away", fmt::format("a place within {:g} m of the origin", renderer::kWorldLimit));
+  }
   light.intensity = read_triple(required(field, "intensity"), kNotNegative, "three numbers ≥ 0, candela");
   return light;
 }

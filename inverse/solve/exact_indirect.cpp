@@ -9,7 +9,7 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kSamplesFactor = 2;     // gather rays per receiver, over those of the bake
+constexpr int kSamplesFactor = 4;     // gather rays per receiver, over those of the bake
 constexpr int kPointsPerSample = 16;  // gather points over rays
 constexpr int kPathsPerPoint = 16, kRaysPerPoint = 32;
 constexpr std::size_t kPathsPerSample = 16000;       // of all lights together, over rays per receiver of the bake …
@@ -56,10 +56,11 @@ GatherOptions gather_options(const BakeSettings& settings) {
 }  // namespace
 
 ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
-                             const BakeSettings& settings)
+                             const BakeSettings& settings, const renderer::Control& control)
     : tracer_(tracer),
       settings_(settings),
-      gather_(make_gather_operator(tracer, receivers, gather_options(settings))) {}
+      gather_(make_gather_operator(tracer, receivers, gather_options(settings),
+                                   {.report = {}, .report_noise = {}, .interrupted = control.interrupted})) {}
 
 void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
   const auto exact = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));

@@ -8,9 +8,9 @@ namespace chiaro::inverse {
 // Indirect light at the important vertices from lights at any position, computed there and not interpolated.
 class ExactIndirect {
  public:
-  // Keeps a reference to the tracer. settings: of the bake, which it surpasses in samples.
+  // Keeps a reference to the tracer. settings: of the bake, which it surpasses in samples. control: to be interrupted.
   ExactIndirect(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
-                const BakeSettings& settings);
+                const BakeSettings& settings, const renderer::Control& control = {});
 
   // Gives each light the correction that makes its response exact where it stands now.
   void correct(const LightResponse& response, LightEstimates& lights) const;

@@ -107,11 +107,12 @@ struct ManyObservations {
 
 ManyObservations observe_many(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control) {
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const ReceiverDraw draw = draw_with_the_lit(problem.target, kMany);
   ManyObservations many{numerics::chosen_from(problem.target.receivers.samples, draw.chosen), {}};
   const int fixed_samples = verification_samples(options, many.samples.size());
   const auto fixed = fixed_illumination(problem, many.samples, fixed_samples, options, control);
-  many.observations = weighted_by_objective(observe_target(problem.target, draw, fixed), options.objective);
+  many.observations =
+      weighted_by_objective(standing_for_all(observe_target(problem.target, draw, fixed)), options.objective);
   many.observations.rules = problem.intensities;
   return many;
 }

@@ -3,14 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inverse/solve/directly_lit.h"
+#include "inverse/solve/refine_joint.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr int kPointsPerSample = 32, kPathsPerPoint = 16, kRaysPerPoint = 32;
+constexpr double kLeastPart = 0.1;  // of the way, that lights are led, as light by bounces changes on it
+constexpr JointRefinementOptions kDescent{.max_iterations = 15, .function_tolerance = 1e-4};
 constexpr double kMissed = 0.3;     // of a receiver's brightness …
 constexpr double kSignificant = 5;  // … and standard errors, that its residual is more than
+
+// Absent: lights may not stand there.
+std::optional<LightEstimates> part_of_the_way(const AllowedPlaces& places, const LightEstimates& from,
+                                              const LightEstimates& to, double part) {
+  std::vector<Eigen::Vector3d> positions;
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    positions.emplace_back(from[j].position + part * (to[j].position - from[j].position));
+  }
+  if (!places.settle(positions)) return std::nullopt;
+  LightEstimates there = to;
+  for (std::size_t j = 0; j < there.size(); ++j) there[j].position = positions[j];
+  return there;
+}
 
 TransportCache cache_of_nothing(std::size_t receivers) {
   TransportCache cache;
@@ -21,7 +38,8 @@ TransportCache cache_of_nothing(std::size_t receivers) {
 }  // namespace
 
 HeldOut::HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
-                 Observations observations, Observations judged, const BakeSettings& settings)
+                 Observations observations, Observations judged, const BakeSettings& settings,
+                 const renderer::Control& control)
     : tracer_(tracer),
       observations_(std::move(observations)),
       judged_(std::move(judged)),
@@ -31,7 +49,8 @@ HeldOut::HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::
                                     .paths_per_point = kPathsPerPoint,
                                     .rays_per_point = kRaysPerPoint,
                                     .bounces = settings.bounces,
-                                    .seed = settings.seed})),
+                                    .seed = settings.seed},
+                                   {.report = {}, .report_noise = {}, .interrupted = control.interrupted})),
       nothing_(cache_of_nothing(receivers.size())),
       response_(tracer, receivers, nothing_) {}
 
@@ -50,6 +69,15 @@ HeldOutFit HeldOut::refit(LightEstimates& lights, const std::vector<const Column
   }
   const double error = refit_intensities(judged_, columns, lights);
   return {error, relative_error(observations_, total_illumination(columns, lights, observations_.wanted.rows()))};
+}
+
+void HeldOut::descend(const LightResponse& search, LightEstimates& lights,
+                      const std::vector<const Column*>& indirect) const {
+  const DirectlyLit directly_lit(tracer_, search, response_.receivers());
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = *indirect[j];
+  LightEstimates led = refine_joint(directly_lit.response(), judged_, lights, kDescent).lights;
+  if (!led.empty()) lights = std::move(led);  // none: there is no place for all
+  for (LightEstimate& light : lights) light.correction = Column();
 }
 
 double HeldOut::error(const Eigen::VectorXd& residuals) const {
@@ -93,6 +121,21 @@ Eigen::VectorXd HeldOutSets::residuals(const LightEstimates& lights) {
 }
 
 HeldOutFit HeldOutSets::refit(LightEstimates& lights) { return held_out_.refit(lights, indirect(lights)); }
+
+bool HeldOutSets::lead_closer(const LightResponse& search, LightEstimates& lights, HeldOutFit& least) {
+  LightEstimates led = lights;
+  held_out_.descend(search, led, indirect(lights));
+  for (double part = 1; part > kLeastPart; part /= 2) {
+    auto there = part_of_the_way(search.places(), lights, led, part);
+    if (!there) continue;
+    const HeldOutFit fit = refit(*there);
+    if (!(fit.error < least.error)) continue;
+    lights = std::move(*there);
+    least = fit;
+    return true;
+  }
+  return false;
+}
 
 bool clearly_smaller(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double standard_errors) {
   const Eigen::VectorXd gain = before - after;

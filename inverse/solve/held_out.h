@@ -14,9 +14,10 @@ struct HeldOutFit {
 class HeldOut {
  public:
   // Keeps a reference to the tracer. judged: the same observations, as the objective weighs them. settings: of the
-  // bake.
+  // bake. control: to be interrupted.
   HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::SurfaceSample>& receivers,
-          Observations observations, Observations judged, const BakeSettings& settings);
+          Observations observations, Observations judged, const BakeSettings& settings,
+          const renderer::Control& control = {});
   HeldOut(const HeldOut&) = delete;
   HeldOut& operator=(const HeldOut&) = delete;
 
@@ -24,6 +25,8 @@ class HeldOut {
   std::vector<Column> indirect(const LightEstimates& lights) const;
   // Gives the lights the intensities that come closest, within the observations' rules.
   HeldOutFit refit(LightEstimates& lights, const std::vector<const Column*>& indirect) const;
+  // Leads the lights to where they come closest, in places of `search`, as if their light by bounces stayed the same.
+  void descend(const LightResponse& search, LightEstimates& lights, const std::vector<const Column*>& indirect) const;
   // Weighted, of each receiver. Their squares would be those of a few receivers beside lights.
   Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
   // By the objective.
@@ -47,6 +50,9 @@ class HeldOutSets {
 
   Eigen::VectorXd residuals(const LightEstimates& lights);
   HeldOutFit refit(LightEstimates& lights);
+  // Leads the lights to where they come closest, in places of `search`, if that is closer than `least`, the error by
+  // the objective. False: it is not, and they stay.
+  bool lead_closer(const LightResponse& search, LightEstimates& lights, HeldOutFit& least);
 
  private:
   // Until the next call.

@@ -45,9 +45,9 @@ std::size_t coarse_stride(const LightGrid& grid) {
   return stride;
 }
 
-UnityLights spread_coarsely(const LightResponse& response) {
+// Of every `stride`-th node along each axis.
+UnityLights spread_coarsely(const LightResponse& response, std::size_t stride) {
   const LightGrid& grid = response.grid();
-  const std::size_t stride = coarse_stride(grid);
   std::vector<char> allowed(grid.positions.size(), 0);
   for (const std::size_t light : response.grid_lights_near_places()) allowed[light] = 1;
   UnityLights spread;
@@ -66,10 +66,10 @@ UnityLights spread_coarsely(const LightResponse& response) {
 }
 
 // The lattice has twice the grid's density; nodes are taken around each survivor, as far as the next coarse ones.
-UnityLights spread_finely(const LightResponse& response, const UnityLights& survivors,
+UnityLights spread_finely(const LightResponse& response, const UnityLights& survivors, std::size_t stride,
                           const std::array<int, 3>& lattice) {
   const LightGrid& grid = response.grid();
-  const auto reach = int(coarse_stride(grid));
+  const auto reach = int(stride);
   std::set<std::size_t> nodes;
   for (const std::size_t survivor : survivors.nodes) {
     const auto c = coordinates(survivor, grid.counts);
@@ -131,9 +131,12 @@ LightDistribution estimate_light_distribution(const LightResponse& response, con
                                               double weak_light) {
   LightDistribution distribution;
   for (int a = 0; a < 3; ++a) distribution.lattice_counts[a] = fine_count(response.grid(), a);
-  UnityLights lights = spread_coarsely(response);
+  // Lights of a layer one node thick may be between the nodes that are taken.
+  std::size_t stride = coarse_stride(response.grid());
+  UnityLights lights = spread_coarsely(response, stride);
+  while (lights.lights.empty() && stride > 1) lights = spread_coarsely(response, stride /= 2);
   distribution.rounds[0] = solve_and_delete(observations, lights, weak_light);
-  lights = spread_finely(response, lights, distribution.lattice_counts);
+  lights = spread_finely(response, lights, stride, distribution.lattice_counts);
   distribution.rounds[1] = solve_and_delete(observations, lights, weak_light);
   distribution.nodes = std::move(lights.nodes);
   distribution.columns = std::move(lights.columns);

@@ -22,6 +22,7 @@ void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
     const Vec3f change = to_vec3f((grown[j] - 1).matrix());
     for (std::size_t i = 0; i < traced.all.value.size(); ++i) traced.all.value[i] += change * traced.of_light[j][i];
   }
+  for (Vec3f& value : traced.all.value) value = max(value, Vec3f{});  // what was taken off may be more, by rounding
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& opti
 LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                              const LightEstimates& lights, StageClock& clock) {
   LightsByTrace by_trace = trace_lights(problem, options, control, lights, clock);
-  const ReceiverDraw draw = draw_evenly(problem.target, kMany);
+  const ReceiverDraw draw = draw_with_the_lit(problem.target, kMany);
   Observations observations =
       observe_target(problem.target, draw, numerics::chosen_from(by_trace.traced.all.value, draw.chosen));
   std::vector<Column> unity;
@@ -52,13 +53,10 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
     observations.wanted += brought;
     unity.push_back(brought * growth(lights[j].intensity, Eigen::Array3d::Ones()).matrix().asDiagonal());
   }
-  observations = weighted_by_objective(observations, options.objective);
+  observations = weighted_by_objective(standing_for_all(observations), options.objective);
   observations.rules = problem.intensities;
   const IntensityFit fit = fit_intensities(observations, unity);
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    const Eigen::Array3d grown = growth(lights[j].intensity, fit.intensity[j]);
-    by_trace.lights[j] = {lights[j].position, lights[j].intensity * grown};
-  }
+  for (std::size_t j = 0; j < lights.size(); ++j) by_trace.lights[j] = {lights[j].position, fit.intensity[j]};
   if (options.exact_lights > 0) light_the_dark(by_trace.lights);
   std::vector<Eigen::Array3d> grown;
   for (std::size_t j = 0; j < lights.size(); ++j) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "inverse/numerics/median.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -19,13 +18,17 @@ constexpr double kPainted = 0.02;               // of the usual noise, or less: 
 constexpr double kWished = 0.25;                // … which is to be met as what has so much of it
 constexpr double kDark = 0.1;                   // in mean brightness: darker receivers count as being as bright
 
-// The brightness that this part of all receivers do not exceed.
+// The brightness that this part of all receivers do not exceed. Of those that have any: paint may leave most of a scene
+// black.
 double quantile(const Eigen::VectorXd& brightness, const Eigen::VectorXd& stands_for, double part) {
-  std::vector<Eigen::Index> order(std::size_t(brightness.size()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::vector<Eigen::Index> order;
+  double all = 0;
+  for (Eigen::Index i = 0; i < brightness.size(); ++i) {
+    if (brightness[i] > 0) order.push_back(i), all += stands_for[i];
+  }
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return brightness[a] < brightness[b]; });
   double below = 0;
-  const double wanted = part * stands_for.sum();
+  const double wanted = part * all;
   for (const Eigen::Index i : order) {
     below += stands_for[i];
     if (below >= wanted) return brightness[i];

@@ -2,6 +2,7 @@
 // What a solve fits: wanted illumination at the important vertices, and lights that may produce it.
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "inverse/solve/intensity_rules.h"
@@ -47,12 +48,14 @@ Observations standing_for_all(const Observations& observations);
 // What some of the receivers say.
 Observations rows_of(const Observations& observations, const std::vector<std::size_t>& rows);
 
+inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+
 // A light being sought.
 struct LightEstimate {
-  Eigen::Vector3d position;        // metres
-  Eigen::Array3d intensity;        // candela per channel, ≥ 0
-  Column correction{};             // added to its unity response wherever it moves; empty: none
-  Eigen::Vector3d corrected_at{};  // where the correction was made
+  Eigen::Vector3d position;  // metres
+  Eigen::Array3d intensity;  // candela per channel, ≥ 0
+  Column correction{};       // added to its unity response wherever it moves; empty: none
+  Eigen::Vector3d corrected_at = Eigen::Vector3d::Constant(kNowhere);  // where the correction was made exact
 };
 using LightEstimates = std::vector<LightEstimate>;
 

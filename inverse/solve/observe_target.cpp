@@ -11,6 +11,8 @@ namespace chiaro::inverse {
 
 namespace {
 
+constexpr std::size_t kEnoughLit = 200;  // receivers, of those drawn evenly
+
 std::vector<std::size_t> of_positive_weight(const Target& target) {
   std::vector<std::size_t> weighted;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
@@ -59,6 +61,18 @@ ReceiverDraw draw_brightest_and_evenly(const Target& target, const Eigen::Vector
   std::vector<Drawn> drawn = evenly_of(rest, most - most / 2);
   std::for_each(receivers.begin(), bright, [&](std::size_t receiver) { drawn.push_back({receiver, 1}); });
   return in_order(std::move(drawn));
+}
+
+ReceiverDraw draw_with_the_lit(const Target& target, std::size_t most) {
+  ReceiverDraw evenly = draw_evenly(target, most);
+  const auto is_lit = [&](std::size_t i) { return max_component(target.illumination[i]) > 0; };
+  const auto lit = std::count_if(evenly.chosen.begin(), evenly.chosen.end(), is_lit);
+  if (std::size_t(lit) >= kEnoughLit || evenly.chosen.size() < most) return evenly;
+  Eigen::VectorXd brightness(Eigen::Index(target.receivers.size()));
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+    brightness[Eigen::Index(i)] = std::sqrt(squared_norm(target.illumination[i]));
+  }
+  return draw_brightest_and_evenly(target, brightness, most);
 }
 
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed) {

@@ -17,6 +17,9 @@ ReceiverDraw draw_evenly(const Target& target, std::size_t most);
 // evenly over the rest: the little that a light shines upon from near by tells most of where it is.
 ReceiverDraw draw_brightest_and_evenly(const Target& target, const Eigen::VectorXd& brightness, std::size_t most);
 
+// Evenly, or, where that would leave out most of the few that are lit, with the brightest of the target.
+ReceiverDraw draw_with_the_lit(const Target& target, std::size_t most);
+
 // What (3.6) asks of these receivers, each by itself. `fixed`: their light without the lights sought, cd/m².
 Observations observe_target(const Target& target, const ReceiverDraw& draw, const std::vector<Vec3f>& fixed);
 

@@ -17,6 +17,8 @@ namespace {
 constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood …
 constexpr double kFarNoise = 2;         // … or so many times its noise
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
+constexpr int kMostLeads = 4;           // descents by held-out receivers …
+constexpr std::size_t kAlwaysLed = 8;   // … of as many lights, and of more where more were found
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 constexpr double kSignificant = 10;     // times what noise alone makes of a light: transport errs, too
@@ -70,11 +72,31 @@ struct RefittedLights {
 };
 
 // Lights that are too few, or kept from where they belong, may shine most on receivers that were not among the
-// important ones, and robust weights would not see it: all sets are refitted to others. Where no lights explain the
-// target those may also speak for a light that is none to all others, so that fewer will do.
-RefittedLights refitted_to_held_out(const HeldOut& held_out, LightEstimates lights, std::vector<LightSet> curve,
+// important ones, and robust weights would not see it: all sets are refitted to others.
+class SetsByHeldOut {
+ public:
+  SetsByHeldOut(const JointSearch& search, std::size_t found, bool far)
+      : response_(search.response), sets_(*search.held_out, 0), most_led_(far ? std::max(found, kAlwaysLed) : 0) {}
+
+  // And led to where they come closest to these, which are more than those that led them, if far from the target.
+  HeldOutFit refit(LightEstimates& lights) {
+    HeldOutFit fit = sets_.refit(lights);
+    if (lights.size() > most_led_) return fit;
+    int leads = 0;
+    while (leads < kMostLeads && sets_.lead_closer(response_, lights, fit)) ++leads;
+    return fit;
+  }
+
+ private:
+  const LightResponse& response_;
+  HeldOutSets sets_;
+  std::size_t most_led_;  // lights of a set
+};
+
+// Where no lights explain the target held-out receivers may also speak for a light that is none to all others, so that
+// fewer will do.
+RefittedLights refitted_to_held_out(SetsByHeldOut sets, LightEstimates lights, std::vector<LightSet> curve,
                                     bool fewer_may_do) {
-  HeldOutSets sets(held_out, 0);
   const HeldOutFit all = sets.refit(lights);
   double least = all.error;
   std::vector<std::pair<LightEstimates, double>> fewer;
@@ -141,7 +163,7 @@ std::vector<LightEstimates> earlier_sets(const SolveOptions& options) {
   std::vector<LightEstimates> sets;
   for (const LightSet& set : options.earlier) {
     const int count = int(set.lights.size());
-    if (count > options.max_lights || (options.exact_lights > 0 && count != options.exact_lights)) continue;
+    if (options.exact_lights > 0 ? count != options.exact_lights : count > options.max_lights) continue;
     sets.push_back(light_estimates(set.lights));
   }
   return sets;
@@ -172,10 +194,10 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
     return choose_light_count(
         response, remaining, tree,
         {options.max_lights - already, std::max(0, options.exact_lights - already), clock.seconds_left(),
-         search.transport_error, &search.exact, search.held_out, earlier_sets(options)});
+         search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options)});
   };
   LightCountResult count = find_the_rest();
-  if (already > 0) {
+  if (already > 0 && !count.out_of_time) {
     // What was found first was found beside the light of all others.
     beside_surfaces =
         refine_lights_beside_surfaces(response, search.exact, search.judged, beside_surfaces, count.lights);
@@ -188,14 +210,13 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
   // blind to all others.
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
-  PolishedLights polished = polish_lights(search.exact, response, last, count.lights);
+  PolishedLights polished = polish_lights(search.exact, response, last, count.lights, clock);
   clock.finish("polish", {{"rounds", polished.rounds}, {"relative_l2", polished.error}});
   found.beside_surfaces = std::move(beside_surfaces);
   found.others = std::move(polished.lights);
   found.error = polished.error;
   found.noise = last.noise;
   found.times_noise = remaining.noise > 0 ? count.error / remaining.noise : std::numeric_limits<double>::infinity();
-  found.sets = std::move(count.sets);
   found.held_out = std::move(count.held_out);
   found.out_of_time = count.out_of_time || clock.out_of_time();
   return found;
@@ -211,7 +232,8 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   const bool refitted = !as_found.empty() && !found.out_of_time && !explained && (far || tied);
   RefittedLights at_last{as_found, found.error_curve};
   if (refitted && search.held_out != nullptr) {
-    at_last = refitted_to_held_out(*search.held_out, as_found, found.error_curve, far && options.exact_lights == 0);
+    at_last = refitted_to_held_out({search, as_found.size(), far}, as_found, found.error_curve,
+                                   far && options.exact_lights == 0);
   } else if (refitted) {
     at_last.lights = refitted_over_many(search, as_found);
   }

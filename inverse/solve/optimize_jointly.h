@@ -39,10 +39,9 @@ struct JointSearch {
 // What the search has come to.
 struct JointLights {
   LightEstimates beside_surfaces, others;
-  double error = 0, noise = 0;       // of the others
-  double times_noise = 0;            // error of the search, which is by noise of target and transport
-  std::vector<LightEstimates> sets;  // of them, the best of each number, from 1
-  Eigen::VectorXd held_out;          // residuals of these receivers; empty: there are none
+  double error = 0, noise = 0;  // of the others
+  double times_noise = 0;       // error of the search, which is by noise of target and transport
+  Eigen::VectorXd held_out;     // residuals of these receivers; empty: there are none
   bool out_of_time = false;
   LightEstimates start;
   std::vector<int> cut;  // of the light tree, nodes

@@ -24,7 +24,7 @@ LightEstimates unpack(const Eigen::VectorXd& x, const AllowedPlaces& places) {
 }  // namespace
 
 SimplexOptimum optimize_simplex(const LightResponse& response, const Observations& observations,
-                                const LightEstimates& start) {
+                                const LightEstimates& start, const std::function<bool()>& stop) {
   const auto n = Eigen::Index(6 * start.size());
   Eigen::VectorXd x(n), step(n), lower(n), upper(n);
   const Box3f region = response.grid().region;
@@ -53,6 +53,7 @@ SimplexOptimum optimize_simplex(const LightResponse& response, const Observation
   options.max_evaluations = kEvaluationsPerParameter * int(n);
   options.value_tolerance = 1e-5;
   options.parameter_tolerance = 1e-3;
+  options.stop = stop;
   const numerics::NelderMeadResult result = numerics::nelder_mead(error, x, step, lower, upper, options);
   return {unpack(result.x, response.places()), result.value, result.evaluations};
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -11,7 +13,8 @@ struct SimplexOptimum {
 };
 
 // Nelder–Mead over positions and intensities, section 3.4.3. Positions stay inside the grid's region, intensities ≥ 0.
+// stop: asked before each step, whether it is to be the last.
 SimplexOptimum optimize_simplex(const LightResponse& response, const Observations& observations,
-                                const LightEstimates& start);
+                                const LightEstimates& start, const std::function<bool()>& stop = {});
 
 }  // namespace chiaro::inverse

@@ -13,20 +13,21 @@ constexpr double kAtRest = 2e-4;  // of the region's diagonal
 constexpr JointRefinementOptions kDescent{.max_iterations = 15, .function_tolerance = 1e-4};
 constexpr double kSettle = 3e-3;  // first steps across shadow edges, of the region's diagonal
 
-}  // namespace
-
+// Metres; the farthest that a light has come from a to b.
 double largest_move(const LightEstimates& a, const LightEstimates& b) {
   double move = 0;
   for (std::size_t j = 0; j < a.size(); ++j) move = std::max(move, (a[j].position - b[j].position).norm());
   return move;
 }
 
+}  // namespace
+
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
-                             const Observations& observations, const LightEstimates& start) {
+                             const Observations& observations, const LightEstimates& start, const StageClock& clock) {
   PolishedLights polished{start, 0, 0};
   const double diagonal = double(response.grid().region.diagonal());
   double move = std::numeric_limits<double>::infinity();
-  while (move > kAtRest * diagonal && polished.rounds < kRounds) {
+  while (move > kAtRest * diagonal && polished.rounds < kRounds && !clock.out_of_time()) {
     exact.correct(response, polished.lights);
     JointRefinement refined = refine_joint(response, observations, polished.lights, kDescent);
     move = largest_move(refined.lights, polished.lights);
@@ -34,7 +35,7 @@ PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& re
     ++polished.rounds;
   }
   polished.error = relative_error(observations, illumination_of(response, polished.lights));
-  if (polished.error <= kExplained * observations.noise) return polished;
+  if (polished.error <= kExplained * observations.noise || clock.out_of_time()) return polished;
   SettledLights settled = settle_positions(response, observations, polished.lights, kSettle * diagonal);
   polished.lights = std::move(settled.lights);
   polished.error = settled.error;

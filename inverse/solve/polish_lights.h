@@ -2,6 +2,7 @@
 
 #include "inverse/solve/exact_indirect.h"
 #include "inverse/solve/refine_joint.h"
+#include "inverse/solve/stage_clock.h"
 
 namespace chiaro::inverse {
 
@@ -13,13 +14,11 @@ struct PolishedLights {
   int rounds = 0;
 };
 
-// Metres; the farthest that a light has come from a to b.
-double largest_move(const LightEstimates& a, const LightEstimates& b);
-
 // The last descent over the important vertices, without interpolation: indirect light is gathered at the lights' very
 // positions, and its difference from the interpolated one is carried along as a constant while the lights are refined;
-// again until they rest. Where noise does not explain what is left they settle across shadow edges.
+// again until they rest. Where noise does not explain what is left they settle across shadow edges. Out of time they
+// stay where they are.
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
-                             const Observations& observations, const LightEstimates& start);
+                             const Observations& observations, const LightEstimates& start, const StageClock& clock);
 
 }  // namespace chiaro::inverse

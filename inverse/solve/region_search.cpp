@@ -30,14 +30,16 @@ constexpr double kMisledAndFar = 0.05;      // … or that those do that leave m
 constexpr double kFartherElsewhere = 1.05;  // times the error where lights were fitted, or more: that misled them
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
-  const ReceiverDraw draw = draw_evenly(problem.target, kHeldOut);
+  const ReceiverDraw draw = draw_with_the_lit(problem.target, kHeldOut);
   const auto samples = numerics::chosen_from(problem.target.receivers.samples, draw.chosen);
   settings.seed = fresh_seed(basis.options.seed, 5);
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, basis.options, basis.control);
   Observations observations = with_noise(observe_target(problem.target, draw, fixed), problem.target, draw.chosen);
+  observations = standing_for_all(observations);
   observations.rules = problem.intensities;
   Observations judged = weighted_by_objective(observations, basis.options.objective);
-  return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), std::move(judged), settings);
+  return std::make_shared<const HeldOut>(problem.tracer, samples, std::move(observations), std::move(judged), settings,
+                                         basis.control);
 }
 
 AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid) {
@@ -64,10 +66,14 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
   if (cut.lights.empty()) return {{}, {}, "no light of the grid reaches the painted surfaces", {}};
-  const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights);
+  const SimplexOptimum optimum =
+      optimize_simplex(response, observations, cut.lights, [&] { return clock.out_of_time(); });
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
   const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
-  return {optimum.lights, cut.lights, reached ? "error threshold of the lightcut met" : "every cluster is a light",
+  return {optimum.lights, cut.lights,
+          clock.out_of_time() ? kTimeLimit
+          : reached           ? "error threshold of the lightcut met"
+                              : "every cluster is a light",
           cut.nodes};
 }
 
@@ -128,14 +134,15 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
   const double begun = clock.total();
   found_ = search_jointly(joint_search(), beside_surfaces_, tree, clock);
   optimal_seconds += clock.total() - begun;
-  if (basis->published.noise == 0) see_how_far_held_out_ones_are(before, clock);
+  see_how_far_held_out_ones_are(before, clock);
 }
 
 void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& clock) {
   const TransportCache& cache = transport.cache;
   const bool same_vertices = before != nullptr && before->basis == basis;
-  exact_ = same_vertices ? before->exact_
-                         : std::make_shared<const ExactIndirect>(problem.tracer, basis->samples, cache.settings);
+  exact_ = same_vertices
+               ? before->exact_
+               : std::make_shared<const ExactIndirect>(problem.tracer, basis->samples, cache.settings, basis->control);
   clock.finish_transport("exact_indirect", {});
   if (basis->options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
     beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis->options));
@@ -149,12 +156,17 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& 
   share_or_hold_out(before, clock);
 }
 
-// Without noise they do not tell how many lights there are, but what a fit to others is worth.
+// Without noise they do not tell how many lights there are, but what a fit to others is worth; and so they do of
+// another search that is to be compared with one that they speak of.
 void RegionSearch::see_how_far_held_out_ones_are(const RegionSearch* before, StageClock& clock) {
-  const bool tells = found_.beside_surfaces.empty() && !found_.out_of_time && found_.error > kCloseEnough;
-  if (!tells || clock.out_of_time()) return;
+  const bool compared = before != nullptr && before->found_.held_out.size() > 0;
+  const bool tells = basis->published.noise == 0 && found_.beside_surfaces.empty() && found_.error > kCloseEnough;
+  const bool known = found_.held_out.size() > 0 || !(compared || tells);
+  if (known || found_.out_of_time || clock.out_of_time()) return;
   share_or_hold_out(before, clock);
-  found_.held_out = HeldOutSets(*held_out_, 0).residuals(found_.others);
+  LightEstimates all = found_.beside_surfaces;
+  all.insert(all.end(), found_.others.begin(), found_.others.end());
+  found_.held_out = HeldOutSets(*held_out_, 0).residuals(all);
 }
 
 void RegionSearch::share_or_hold_out(const RegionSearch* before, StageClock& clock) {
@@ -211,7 +223,8 @@ bool RegionSearch::brings_closer() const {
 }
 
 bool RegionSearch::was_misled() const {
-  return !found_.out_of_time && basis->options.earlier.empty() && missed() > most_missed();
+  const bool close = basis->published.noise == 0 && found_.error <= kCloseEnough;
+  return !found_.out_of_time && basis->options.earlier.empty() && !close && missed() > most_missed();
 }
 
 bool RegionSearch::misses_less_than(const RegionSearch& other) const {

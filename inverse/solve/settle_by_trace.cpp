@@ -147,7 +147,8 @@ void carry_along(const Settling& with, const FreshTrace& before, const FreshTrac
   }
 }
 
-// The illumination that was traced becomes that of the lights where they are now.
+// The illumination that was traced becomes that of the lights where they are now: none is negative by what was taken
+// off.
 void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
   std::vector<Vec3f>& illumination = traced.all.value;
   Column change = Column::Zero(Eigen::Index(illumination.size()), 3);
@@ -160,7 +161,7 @@ void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
     change += (now[j] + indirect) * free.now[j].intensity.matrix().asDiagonal();
   }
   for (std::size_t i = 0; i < illumination.size(); ++i) {
-    illumination[i] += to_vec3f(change.row(Eigen::Index(i)).transpose());
+    illumination[i] = max(illumination[i] + to_vec3f(change.row(Eigen::Index(i)).transpose()), Vec3f{});
   }
 }
 
@@ -266,6 +267,7 @@ class Settler {
       if (!rests) {
         earlier = std::exchange(before, lights);
         lights = joined(on_the_way_, lights, free);
+        if (options_.exact_lights > 0) light_the_dark(lights);
         come_to_rest(on_the_way_.some.response().places(), earlier, before, lights);
       }
       finish("approach", lights.size(), rests);

@@ -205,13 +205,27 @@ SearchBasis make_basis(const SolveProblem& problem, const SolveOptions& options,
   return {options, control, std::move(importance), std::move(samples), std::move(published), region_may_grow(problem)};
 }
 
+// Null: `fallback` is what there is, as the grid of a larger region has too many lights.
+std::unique_ptr<RegionSearch> search_region(const std::shared_ptr<const SearchBasis>& basis,
+                                            const SolveProblem& problem, const std::optional<Box3f>& region,
+                                            const RegionSearch* fallback, const RegionSearch* before,
+                                            StageClock& clock) {
+  try {
+    return std::make_unique<RegionSearch>(basis, problem, region, before, clock);
+  } catch (const renderer::Error&) {
+    if (fallback == nullptr) throw;
+    return nullptr;
+  }
+}
+
 // In ever larger regions, as long as that brings the lights clearly closer. before: with other important vertices.
 std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& basis, const SolveProblem& problem,
                                      std::optional<Box3f> region, const RegionSearch* before, StageClock& clock,
                                      SolveResult& result) {
   std::unique_ptr<RegionSearch> best;
   for (int regions = 0; regions < kMostRegions && (!best || (region && !clock.out_of_time())); ++regions) {
-    auto search = std::make_unique<RegionSearch>(basis, problem, region, best ? best.get() : before, clock);
+    auto search = search_region(basis, problem, region, best.get(), best ? best.get() : before, clock);
+    if (!search) break;
     result.initial_seconds += search->initial_seconds;
     result.optimal_seconds += search->optimal_seconds;
     result.cache_seconds += search->cache_seconds;

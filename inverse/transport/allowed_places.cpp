@@ -155,7 +155,9 @@ Vector3d AllowedPlaces::in_front_of(const MountedSurface& mount, const Vector3d&
   const bool behind = near.double_sided && (position - near.point).dot(near.normal) < 0;
   const Vector3d normal = behind ? Vector3d(-near.normal) : near.normal;
   const Vector3d outwards = is_in_front(mount, near, position) ? direction(near.point, position, normal) : normal;
-  return near.point + mount.clearance * outwards;
+  // Rounded to floats, a place at the very clearance may be nearer than surfaces allow.
+  const double distance = std::max(mount.clearance, farther(rules_.surface_distance, near.point));
+  return near.point + distance * outwards;
 }
 
 bool AllowedPlaces::hangs_on(const MountedSurface& mount, const Vector3d& position) const {

@@ -288,6 +288,7 @@ Box3f parse_region(const renderer::Scene& scene, const Region& region) {
     refuse(scene, asked_in, fmt::format("no node with a mesh is named \"{}\"", text),
            "a node's name, or x0,y0,z0,x1,y1,z1 in metres");
   }
+  if (!(box.diagonal() > 0)) refuse(scene, asked_in, "is a single point", "a node of some extent");
   return box;
 }
 

@@ -16,6 +16,7 @@ using renderer::Attributes;
 using renderer::Error;
 
 constexpr int kFormatVersion = 1;
+constexpr int kMostSamples = 1 << 24;
 
 std::array<float, 3> array_of(Vec3f v) { return {v.x, v.y, v.z}; }
 
@@ -185,6 +186,10 @@ TransportCache transport_cache_from(const Attributes& attributes, int receivers,
   cache.scene_fingerprint = header.get<std::string>("scene_fingerprint");
   cache.receiver_fingerprint = header.get<std::string>("receiver_fingerprint");
   cache.settings.samples = header.get<int>("samples");
+  if (cache.settings.samples < 1 || cache.settings.samples > kMostSamples) {
+    throw Error({name, "header", fmt::format("chiaro:samples is {}", cache.settings.samples),
+                 fmt::format("1 to {}", kMostSamples)});
+  }
   cache.settings.bounces = header.get<int>("bounces");
   cache.settings.seed = header.parse<std::uint64_t>(header.get<std::string>("seed"), "seed");
   cache.settings.materials = header.get<std::string>("materials");

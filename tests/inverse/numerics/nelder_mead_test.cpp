@@ -127,6 +127,16 @@ TEST(NelderMead, EvaluationsAreCountedAndLimited) {
   }
 }
 
+TEST(NelderMead, StopsWhenAskedTo) {
+  int steps = 0;
+  const NelderMeadResult stopped =
+      minimise_freely(rosenbrock, Eigen::Vector2d(-1.2, 1), {.stop = [&] { return ++steps > 5; }});
+  EXPECT_EQ(steps, 6);
+  EXPECT_FALSE(stopped.converged);
+  EXPECT_LT(stopped.evaluations, 30);
+  EXPECT_LE(stopped.value, rosenbrock(Eigen::Vector2d(-1.2, 1)));
+}
+
 TEST(NelderMead, ARestartNeverMakesItWorse) {
   const NelderMeadResult once = minimise_freely(rosenbrock, Eigen::Vector2d(-1.2, 1), {.restart = false});
   const NelderMeadResult twice = minimise_freely(rosenbrock, Eigen::Vector2d(-1.2, 1));

@@ -38,6 +38,8 @@ TEST(ErrorCurveFile, FaultsAreToldWithTheirPlace) {
        "error_curve: has no sets of lights (expected the summary of a solve with --method joint"},
       {set + R"({"lights":[]}]})", "error_curve[1].lights: "},
       {set + R"({"lights":[{"position":[1,2],"intensity":[4,5,6]}]}]})", "error_curve[1].lights[0].position: "},
+      {set + R"({"lights":[{"position":[1,2,3e9],"intensity":[4,5,6]}]}]})",
+       "error_curve[1].lights[0].position: is too far away (expected a place within 1e+09 m of the origin)"},
       {set + R"({"lights":[{"position":[1,2,3],"intensity":[4,-5,6]}]}]})", "error_curve[1].lights[0].intensity"},
   };
   for (const auto& [text, said] : faults) EXPECT_NE(error_of(text).find(said), std::string::npos) << error_of(text);

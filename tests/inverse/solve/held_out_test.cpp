@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "inverse/transport/bake.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/receivers.h"
 #include "renderer/core/sampler.h"
@@ -55,6 +56,29 @@ TEST_F(HeldOutRoom, TheRightLightsLeaveLittle) {
   const double target = residuals({}).norm();
   EXPECT_LT(residuals(lights_).norm(), 0.03 * target);
   EXPECT_GT(residuals({lights_[0]}).norm(), 0.05 * target);
+}
+
+TEST_F(HeldOutRoom, LeadsLightsToWhereTheyComeClosest) {
+  const Receivers receivers = make_receivers(scene_, {.max_edge = 0.5F});
+  const LightGrid grid = make_light_grid(*tracer_, {.counts = {3, 3, 3}, .region = {}});
+  const TransportCache cache = bake(*tracer_, receivers, grid, {.samples = 8, .bounces = 0}).cache;
+  const LightResponse search(*tracer_, receivers.samples, cache);
+  LightEstimates led = lights_;
+  for (LightEstimate& light : led) light.position += Eigen::Vector3d(0.1, -0.05, 0.1);
+  HeldOutSets sets(*held_out_, 0);
+  HeldOutFit fit = sets.refit(led);
+  const double before = fit.error;
+  for (int k = 0; k < 4 && sets.lead_closer(search, led, fit); ++k) continue;
+  LightEstimates right = lights_;
+  EXPECT_LE(fit.error, 1.01 * sets.refit(right).error);
+  EXPECT_LT(fit.error, 0.3 * before);
+  EXPECT_LT((led[0].position - lights_[0].position).norm(), 0.01);
+  const LightEstimates at_rest = led;
+  const HeldOutFit least = fit;
+  fit.error = 0;
+  EXPECT_FALSE(sets.lead_closer(search, led, fit));
+  EXPECT_EQ(led[0].position, at_rest[0].position);
+  EXPECT_EQ(sets.refit(led).error, least.error);
 }
 
 TEST_F(HeldOutRoom, ALightThatIsThereIsClearlySeen) {

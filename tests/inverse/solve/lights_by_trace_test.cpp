@@ -53,6 +53,16 @@ TEST_F(RefitByTrace, KeepsToTheRules) {
   }
 }
 
+// What is taken off a channel that goes out is what it gave, but for rounding.
+TEST_F(RefitByTrace, LeavesNoNegativeLight) {
+  LightEstimates known = known_lights(1);
+  known[0].intensity[1] = 0;
+  LightEstimates start = known_lights(2);
+  start[0].intensity = {3.1, 0.7, 1.3};
+  const LightsByTrace refitted = refit(corner_.target(known, -1), start);
+  for (const Vec3f& light : refitted.traced.all.value) EXPECT_GE(std::min({light.x, light.y, light.z}), 0);
+}
+
 // Nothing is known of a channel that did not shine.
 TEST_F(RefitByTrace, DarkChannelsStayDark) {
   LightEstimates start = known_lights(1);

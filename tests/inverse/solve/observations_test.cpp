@@ -112,5 +112,24 @@ TEST(Observations, RelativeResidualsCountBrightAndDimReceiversAlike) {
   }
 }
 
+// Paint on black: a pool on one receiver of a hundred is not what has to be made darker.
+TEST(Observations, CapsAreOfTheReceiversThatAreLit) {
+  Observations observations;
+  observations.target = Column::Zero(1000, 3);
+  for (int i = 0; i < 10; ++i) observations.target.row(100 * i).setConstant(i == 9 ? 40 : 1);
+  observations.wanted = observations.target;
+  observations.sqrt_weight = observations.stands_for = Eigen::VectorXd::Ones(1000);
+  observations.standard_error = Eigen::VectorXd::Zero(1000);
+  observations.measure_target();
+  const Observations capped = with_capped_weights(observations);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(capped.sqrt_weight[100 * i], 1) << i;
+  EXPECT_EQ(capped.target_norm, observations.target_norm);
+  observations.target.topRows(400).setOnes();
+  observations.target.row(900).setConstant(40);
+  const Observations of_many = with_capped_weights(observations);
+  EXPECT_EQ(of_many.sqrt_weight[0], 1);
+  EXPECT_NEAR(of_many.sqrt_weight[900], 1.0 / 40, 1e-12);
+}
+
 }  // namespace
 }  // namespace chiaro::inverse

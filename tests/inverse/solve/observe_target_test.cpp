@@ -49,6 +49,20 @@ TEST_F(Draws, AreSpreadEvenly) {
   for (std::size_t k = 1; k < kMost; ++k) EXPECT_LE(draw.chosen[k] - draw.chosen[k - 1], step + 3);
 }
 
+// An even draw would hold few of twenty receivers that are lit among thousands.
+TEST_F(Draws, HoldTheFewThatAreLit) {
+  std::vector<std::size_t> lit;
+  for (std::size_t i = 1; i < target_.receivers.size() && lit.size() < 20; i += target_.receivers.size() / 25) {
+    if (target_.weight[i] == 0) continue;
+    target_.illumination[i] = {1, 2, 3};
+    lit.push_back(i);
+  }
+  ASSERT_GT(lit.size(), 10U);
+  const ReceiverDraw draw = draw_with_the_lit(target_, kMost);
+  expect_sound(draw);
+  for (const std::size_t i : lit) EXPECT_TRUE(std::binary_search(draw.chosen.begin(), draw.chosen.end(), i)) << i;
+}
+
 TEST_F(Draws, HoldTheBrightestAndSomeOfTheRest) {
   Eigen::VectorXd brightness(Eigen::Index(target_.receivers.size()));
   for (Eigen::Index i = 0; i < brightness.size(); ++i) brightness[i] = double((i * 7919) % 1009);

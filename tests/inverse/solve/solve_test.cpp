@@ -92,6 +92,40 @@ TEST(Solve, SearchesAgainByMoreVerticesWhereAFitToPaintIsFartherFromTheRest) {
   EXPECT_EQ(solve(problem_of(corner, target, 0), few).important_vertices, 300);
 }
 
+// Where nearly all is black two small pools are all that is asked for.
+TEST(Solve, FindsPoolsPaintedOnBlack) {
+  const PaintedCorner corner(0.25F);
+  Target target = corner.target(known_lights(1), 0);
+  const Vec3f middle[] = {{1, 0, 3}, {0, 1.5F, 1}};
+  std::size_t lit = 0;
+  for (std::size_t i = 0; i < target.weight.size(); ++i) {
+    const Vec3f p = target.receivers.samples[i].position;
+    const bool in_a_pool = length(p - middle[0]) < 0.35F || length(p - middle[1]) < 0.35F;
+    target.illumination[i] = in_a_pool ? Vec3f{9, 7, 4} : Vec3f{};
+    lit += in_a_pool;
+  }
+  ASSERT_GT(lit, 10U);
+  ASSERT_LT(lit, target.weight.size() * 3 / 100);
+  const SolveResult result = solve(problem_of(corner, target, 0), quick());
+  EXPECT_LT(result.relative_l2, 0.6);
+  for (const Vec3f& pool : middle) {
+    const auto beside = [&](const Vector3d& light) { return length(to_vec3f(light) - pool) < 0.6F; };
+    const std::vector<Vector3d> lights = positions_of(result);
+    EXPECT_TRUE(std::any_of(lights.begin(), lights.end(), beside));
+  }
+}
+
+TEST(Solve, AnEarlierSetStaysWhereTimeIsUp) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(2), 0);
+  SolveOptions options = quick();
+  options.time_limit = 1e-9;
+  options.earlier = {{{point_light(known_lights(2)[0]), point_light(known_lights(2)[1])}, 0}};
+  const SolveResult result = solve(problem_of(corner, target, 0), options);
+  EXPECT_EQ(result.lights.size(), 2U);
+  EXPECT_LT(farthest_from(known_lights(2), positions_of(result)), 0.02 * corner.diagonal());
+}
+
 TEST(Solve, ATimeLimitEndsAllOfItAndIsWhatIsSaid) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(2), 0);
@@ -110,6 +144,8 @@ TEST(Solve, ATimeLimitEndsAllOfItAndIsWhatIsSaid) {
     ASSERT_NE(check, result.stages.end());
     EXPECT_EQ(check->figures.front(), (std::pair<std::string, double>("samples", 16)));
   }
+  options.method = SolveMethod::kThesis;
+  EXPECT_EQ(solve(problem, options).termination, "time limit");
 }
 
 // Seven centimetres above a receiver of the floor, which then holds nearly all of the target's squared norm.

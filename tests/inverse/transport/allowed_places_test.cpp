@@ -118,6 +118,21 @@ TEST_F(Places, HangOnSurfacesNotBesideTheirRims) {
   }
 }
 
+// As near as surfaces allow, which floats must not undercut.
+TEST_F(Places, HangAtTheVeryDistanceThatSurfacesAskFor) {
+  for (const float height : {2.5F, 3.0F, 4.0F}) {
+    renderer::Scene scene;
+    test::add_mesh(scene, test::rectangle({0, height, 0}, {2, 0, 0}, {0, 0, 2}), test::lambert({1, 1, 1}), "ceiling");
+    for (const double distance : {0.1, 0.2, 0.3, 0.5}) {
+      const Box3f bounds{{0, 0, 0}, {2, height, 2}};
+      const AllowedPlaces places(scene, bounds, {.mounts = {{"ceiling", distance}}, .surface_distance = distance});
+      const auto place = places.nearest({1, 1, 1});
+      ASSERT_TRUE(place) << height << ", " << distance;
+      EXPECT_NEAR(double(height) - place->y(), distance, 1e-5);
+    }
+  }
+}
+
 // Where one of several regions is too near to surfaces the others are left.
 TEST_F(Places, OnSurfacesThatAreTooNearCountForNothing) {
   const std::string node = scene_.instances.back().name;

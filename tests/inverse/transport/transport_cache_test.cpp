@@ -198,6 +198,10 @@ TEST_F(TransportCacheFile, HeadersThatDoNotFitAreRefused) {
     save_with("indirect_scale", scale);
     expect_refused("indirect_scale " + std::to_string(scale));
   }
+  for (const int samples : {0, -1, 1 << 30}) {
+    save_with("samples", samples);
+    expect_refused("samples " + std::to_string(samples));
+  }
   save_with("seed", std::string("many"));
   expect_refused("a seed that is no number");
   save_with("samples", std::string("77"));
