@@ -75,20 +75,25 @@ struct RefittedLights {
 // important ones, and robust weights would not see it: all sets are refitted to others.
 class SetsByHeldOut {
  public:
-  SetsByHeldOut(const JointSearch& search, std::size_t found, bool far)
-      : response_(search.response), sets_(*search.held_out, 0), most_led_(far ? std::max(found, kAlwaysLed) : 0) {}
+  SetsByHeldOut(const JointSearch& search, const StageClock& clock, std::size_t found, bool far)
+      : response_(search.response),
+        clock_(clock),
+        sets_(*search.held_out, 0),
+        most_led_(far ? std::max(found, kAlwaysLed) : 0) {}
 
   // And led to where they come closest to these, which are more than those that led them, if far from the target.
   HeldOutFit refit(LightEstimates& lights) {
     HeldOutFit fit = sets_.refit(lights);
     if (lights.size() > most_led_) return fit;
-    int leads = 0;
-    while (leads < kMostLeads && sets_.lead_closer(response_, lights, fit)) ++leads;
+    for (int k = 0; k < kMostLeads && !clock_.out_of_time(); ++k) {
+      if (!sets_.lead_closer(response_, lights, fit)) break;
+    }
     return fit;
   }
 
  private:
   const LightResponse& response_;
+  const StageClock& clock_;
   HeldOutSets sets_;
   std::size_t most_led_;  // lights of a set
 };
@@ -232,7 +237,7 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   const bool refitted = !as_found.empty() && !found.out_of_time && !explained && (far || tied);
   RefittedLights at_last{as_found, found.error_curve};
   if (refitted && search.held_out != nullptr) {
-    at_last = refitted_to_held_out({search, as_found.size(), far}, as_found, found.error_curve,
+    at_last = refitted_to_held_out({search, clock, as_found.size(), far}, as_found, found.error_curve,
                                    far && options.exact_lights == 0);
   } else if (refitted) {
     at_last.lights = refitted_over_many(search, as_found);
