@@ -14,7 +14,8 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kSeen = 0.05;        // relative L2 beyond noise
+constexpr double kSeen = 0.05;        // relative L2 beyond noise …
+constexpr double kNoise = 1.5;        // … whose square is known as well as this
 constexpr double kCell = 0.08;        // of the receivers' diagonal: what counts as one place
 constexpr double kLeastCell = 0.005;  // of the squared error, that a cell counts with
 constexpr double kLeastShare = 0.05;  // of the squared error
@@ -134,7 +135,7 @@ std::vector<NotReached> places_not_reached(const Target& target, const std::vect
     wanted += double(target.weight[i]) * squared_norm(target.illumination[i]);
   }
   const double total = total_of(cells);
-  if (total <= (kSeen * kSeen + noise * noise) * wanted) keep_clear_ones(target, cells);
+  if (total <= (kSeen * kSeen + kNoise * noise * noise) * wanted) keep_clear_ones(target, cells);
   std::vector<NotReached> places = places_by_surface(target.receivers, cells, total);
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
   if (places.empty()) return places;

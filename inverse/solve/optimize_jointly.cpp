@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kFarFromTarget = 0.1;  // error of lights that do not stand where the target's stood …
 constexpr double kFarNoise = 2;         // … or so many times its noise
+constexpr double kClearlyLess = 0.98;   // of an error
 constexpr double kWorthALight = 1.05;   // times the error of more lights, or less: they are too many
 constexpr int kMostLeads = 4;           // descents by held-out receivers …
 constexpr std::size_t kAlwaysLed = 8;   // … of as many lights, and of more where more were found
@@ -138,6 +139,16 @@ LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
   return lights;
 }
 
+// Further lights make the error clearly less, though not as much less as they would have to.
+bool another_explains_more(const std::vector<LightSet>& curve, std::size_t count) {
+  double least = std::numeric_limits<double>::infinity(), at_count = least;
+  for (const LightSet& set : curve) {
+    if (set.lights.size() == count) at_count = set.relative_l2;
+    if (set.lights.size() > count) least = std::min(least, set.relative_l2);
+  }
+  return least < kClearlyLess * at_count && at_count < std::numeric_limits<double>::infinity();
+}
+
 // One light more never makes a set worse, however the search came by it.
 void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
   for (std::size_t k = 1; k < curve.size(); ++k) {
@@ -250,11 +261,14 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   std::size_t held = found.beside_surfaces.size();
   LightEstimates lights =
       options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
+  const char* const termination = found.out_of_time          ? kTimeLimit
+                                  : options.exact_lights > 0 ? "as many lights as asked for"
+                                  : another_explains_more(error_curve, lights.size())
+                                      ? "further lights explain little more"
+                                      : "no further light explains more";
   return {std::move(lights),
           found.start,
-          found.out_of_time          ? kTimeLimit
-          : options.exact_lights > 0 ? "as many lights as asked for"
-                                     : "no further light explains more",
+          termination,
           found.cut,
           std::move(error_curve),
           !found.out_of_time && (far || tied),

@@ -11,7 +11,6 @@ constexpr Vec3f kWhite{1, 1, 1};
 constexpr float kLeastAlpha = 1e-3F;     // a smaller one is a mirror to any eye and overflows D
 constexpr float kPunctualAlpha = 5e-3F;  // a lamp of 1 cm at a metre
 constexpr float kBlurredAlpha = 0.1F;
-constexpr float kLeastBending = 0.01F;  // of eta from 1; less does not refract
 
 }  // namespace
 
@@ -42,7 +41,7 @@ BsdfBase::BsdfBase(const SurfacePoint& point)
   transmission_ = (1 - metallic_) * layers.transmission;
   diffusion_ = inside ? 0 : 1 - layers.transmission;
   clear_ = transmission_ > 0 && is_clear(point.roughness);
-  if (layers.solid && layers.ior > 1 + kLeastBending) eta_ = inside ? 1 / layers.ior : layers.ior;
+  if (layers.solid && bends(layers.ior)) eta_ = inside ? 1 / layers.ior : layers.ior;
 }
 
 BsdfSketch BsdfBase::sketch() const {

@@ -6,6 +6,12 @@
 
 namespace chiaro::renderer {
 
+// Refractive index of a solid: of one so near 1 light goes straight through.
+inline bool bends(float ior) {
+  constexpr float kLeastBending = 0.01F;
+  return ior > 1 + kLeastBending;
+}
+
 // Schlick's (1 − cosθ)⁵.
 inline float schlick_weight(float cosine) {
   const float m = std::clamp(1 - cosine, 0.0F, 1.0F);

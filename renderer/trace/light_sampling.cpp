@@ -53,12 +53,17 @@ struct PunctualVisitor {
   }
 };
 
+// What a surface emits there, times the part of it that alpha leaves.
+Vec3f covered_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  return surface_coverage(scene, mesh, triangle, u, v) * surface_emission(scene, mesh, triangle, u, v);
+}
+
 // Mean luminance over a triangle of a texture, from a few points; never zero where anything may be emitted.
 float mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   constexpr float kPoints[][2] = {{1 / 3.F, 1 / 3.F}, {.1F, .1F},  {.8F, .1F}, {.1F, .8F},
                                   {.45F, .45F},       {.45F, .1F}, {.1F, .45F}};
   float sum = 0;
-  for (const auto& p : kPoints) sum += luminance(surface_emission(scene, mesh, triangle, p[0], p[1]));
+  for (const auto& p : kPoints) sum += luminance(covered_emission(scene, mesh, triangle, p[0], p[1]));
   return sum / float(std::size(kPoints)) + 0.02F * luminance(scene.materials[mesh.material].emission);
 }
 
@@ -150,7 +155,7 @@ EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, Vec3f normal, d
   s.to_light = d / s.distance;
   const float cosine = std::abs(dot(s.to_light, e.normal));
   if (!(cosine > 1e-7F)) return {};
-  s.radiance = surface_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
+  s.radiance = covered_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
   s.pdf = found->probability / e.area * d2 / cosine;
   return s;
 }

@@ -6,6 +6,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
+#include "renderer/trace/fresnel.h"
 #include "renderer/trace/surface_point.h"
 
 namespace chiaro::renderer {
@@ -89,13 +90,8 @@ float cosine_of(const Candidate& c) {
   return dot(normal, direction) / std::sqrt(length_squared(normal) * length_squared(direction));
 }
 
-// Alpha mask and blend: a hit that the alpha does not hold is passed through. The part of all rays that it holds.
-float held_by_alpha(const Candidate& c) {
-  if (c.material.alpha_mode == AlphaMode::kOpaque) return 1;
-  const float alpha = surface_alpha(c.scene, c.mesh, c.triangle, c.u, c.v);
-  if (c.material.alpha_mode == AlphaMode::kBlend) return alpha;
-  return alpha >= c.material.alpha_cutoff ? 1 : 0;
-}
+// A hit that the alpha does not hold is passed through. The part of all rays that it holds.
+float held_by_alpha(const Candidate& c) { return surface_coverage(c.scene, c.mesh, c.triangle, c.u, c.v); }
 
 bool alpha_holds(const Candidate& c) {
   const float held = held_by_alpha(c);
@@ -114,7 +110,8 @@ float let_through(const Candidate& c) {
 
 bool passes_clear(const Candidate& c, ClearSurfaces clear) {
   if (clear == ClearSurfaces::kStop || !c.material.layers) return false;
-  if (clear == ClearSurfaces::kPassThin && c.material.layers->solid) return false;
+  const bool refracts = c.material.layers->solid && bends(c.material.layers->ior);
+  if (clear == ClearSurfaces::kPassThin && refracts) return false;
   if (clear == ClearSurfaces::kPassByChance) return unit_float(hash_combine(seed_of(c), 1)) < let_through(c);
   return surface_is_clear(c.scene, c.mesh, c.triangle, c.u, c.v);
 }

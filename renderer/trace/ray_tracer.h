@@ -12,8 +12,8 @@ namespace chiaro::renderer {
 // Which clear surfaces (is_clear) a ray passes as if they were not there.
 enum class ClearSurfaces : std::uint8_t {
   kStop,
-  kPassThin,
-  kPassAll,       // boundaries of solids too
+  kPassThin,      // and boundaries of solids that do not bend light
+  kPassAll,       // boundaries of all solids too
   kPassByChance,  // all, with the probability that is the luminance of what they let through: by alpha_seed
 };
 

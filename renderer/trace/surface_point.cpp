@@ -254,6 +254,14 @@ float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle
   return alpha;
 }
 
+float surface_coverage(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const Material& material = scene.materials[mesh.material];
+  if (material.alpha_mode == AlphaMode::kOpaque) return 1;
+  const float alpha = surface_alpha(scene, mesh, triangle, u, v);
+  if (material.alpha_mode == AlphaMode::kBlend) return std::clamp(alpha, 0.0F, 1.0F);
+  return alpha >= material.alpha_cutoff ? 1 : 0;
+}
+
 bool surface_is_clear(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
   const Material& material = scene.materials[mesh.material];
   if (!material.layers || !(material.layers->transmission > 0)) return false;

@@ -50,6 +50,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
 
 // Alpha of a mesh at barycentric u, v of a triangle: factor × texture × vertex colour.
 float surface_alpha(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
+// The part of all rays that its material's alpha mode holds there; the others pass.
+float surface_coverage(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
 // A transmission of at most this roughness counts as clear: thin sheets let light straight through, and the shadow rays
 // of punctual lights pass both sheets and solids.

@@ -103,6 +103,28 @@ TEST(ClearSurfaces, EmissiveSurfacesShineThroughAPane) {
   EXPECT_GT(behind, open * 0.94);
 }
 
+// Of a solid that does not bend light rays go straight through, so light samples have to as well.
+TEST(ClearSurfaces, SolidsThatDoNotBendLightOnlyAbsorb) {
+  const auto below = [](float ior, bool with_block) {
+    Scene scene;
+    if (with_block) add_mesh(scene, block(0.5F), glass(true, 0, {0, 2, 0}), "block");
+    if (with_block) scene.materials[0].layers->ior = ior;
+    add_mesh(scene, rectangle({-0.02F, 9, -0.02F}, {0.04F, 0, 0}, {0, 0, 0.04F}),
+             test::lambert({0, 0, 0}, {9e4F, 9e4F, 0}), "lamp");
+    add_mesh(scene, rectangle({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), test::lambert({0, 0, 0}, {0, 0, 50}), "ceiling");
+    scene.materials.back().alpha_mode = AlphaMode::kBlend;
+    scene.materials.back().alpha = 0.5F;
+    return traced(scene, {}, 0, 1 << 14);
+  };
+  const Vec3f open = below(1, false);
+  for (const float ior : {1.0F, 1.01F}) {
+    const Vec3f behind = below(ior, true);
+    EXPECT_NEAR(behind.x / open.x, 1, 0.02) << ior;
+    EXPECT_NEAR(behind.y / open.y, std::exp(-1.0), 0.02) << ior;
+    EXPECT_NEAR(behind.z / open.z, 1, 0.02) << ior;
+  }
+}
+
 double frame_mean(const Scene& scene, Vec3f eye, int samples, const Lights& lights = {}) {
   const RayTracer tracer(scene);
   Camera camera;

@@ -178,6 +178,26 @@ TEST(TraceIllumination, EmissivePanelMatchesItsFormFactor) {
   EXPECT_NEAR(result.value[0].z, 1 * form_factor, 6 * double(result.standard_error[0].z) + 1e-4);
 }
 
+// What alpha hides of a surface gives no light either, however it is found: by rays or by light samples.
+TEST(TraceIllumination, EmissiveSurfacesShineAsFarAsAlphaHoldsThem) {
+  const auto traced = [](AlphaMode mode, float alpha) {
+    Scene scene;
+    Material panel = lambert({0, 0, 0}, {3, 2, 1});
+    panel.alpha_mode = mode;
+    panel.alpha = alpha;
+    add_mesh(scene, rectangle({-0.5F, 1, -0.5F}, {1, 0, 0}, {0, 0, 1}), panel, "panel");
+    const RayTracer tracer(scene);
+    const std::vector<SurfaceSample> points{{{0, 0, 0}, {0, 1, 0}}};
+    return trace_illumination(tracer, points, {}, {.samples = 8192, .bounces = 0, .seed = 2});
+  };
+  const auto whole = traced(AlphaMode::kOpaque, 1).value[0].x;
+  for (const float alpha : {1.0F, 0.6F, 0.1F, 0.0F}) {
+    const auto blended = traced(AlphaMode::kBlend, alpha);
+    EXPECT_NEAR(blended.value[0].x, alpha * whole, 6 * blended.standard_error[0].x + 1e-4F) << alpha;
+    EXPECT_NEAR(traced(AlphaMode::kMask, alpha).value[0].x, alpha >= 0.5F ? whole : 0, 0.01F * whole) << alpha;
+  }
+}
+
 // A mirror above a lamp throws the light of the lamp's image, although no path meets the lamp itself.
 TEST(TraceIllumination, MirrorsThrowTheLightOfTheImage) {
   Scene scene;
