@@ -117,7 +117,8 @@ void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace 
   result.verification_noise = relative_standard_error(traced.all);
   result.illumination = std::move(traced.all.value);
   result.relative_l2 = relative_l2(result.illumination, target.illumination, target.weight);
-  const double noise = std::hypot(result.verification_noise.value_or(0), result.target_noise);
+  if (!result.verification_noise) return;  // by one path nobody can tell what is noise
+  const double noise = std::hypot(*result.verification_noise, result.target_noise);
   result.not_reached = places_not_reached(target, result.illumination, noise);
   result.advice = advice_for(problem, options, result);
 }
