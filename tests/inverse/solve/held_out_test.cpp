@@ -61,7 +61,9 @@ TEST_F(HeldOutRoom, TheRightLightsLeaveLittle) {
 TEST_F(HeldOutRoom, LeadsLightsToWhereTheyComeClosest) {
   const Receivers receivers = make_receivers(scene_, {.max_edge = 0.5F});
   const LightGrid grid = make_light_grid(*tracer_, {.counts = {3, 3, 3}, .region = {}});
-  const TransportCache cache = bake(*tracer_, receivers, grid, {.samples = 8, .bounces = 0}).cache;
+  BakeSettings direct = settings_;
+  direct.bounces = 0;
+  const TransportCache cache = bake(*tracer_, receivers, grid, direct).cache;
   const LightResponse search(*tracer_, receivers.samples, cache);
   LightEstimates led = lights_;
   for (LightEstimate& light : led) light.position += Eigen::Vector3d(0.1, -0.05, 0.1);
