@@ -59,8 +59,7 @@ ExactIndirect::ExactIndirect(const renderer::RayTracer& tracer, const std::vecto
                              const BakeSettings& settings, const renderer::Control& control)
     : tracer_(tracer),
       settings_(settings),
-      gather_(make_gather_operator(tracer, receivers, gather_options(settings),
-                                   {.report = {}, .report_noise = {}, .interrupted = control.interrupted})) {}
+      gather_(make_gather_operator(tracer, receivers, gather_options(settings), control.without_progress())) {}
 
 void ExactIndirect::correct(const LightResponse& response, LightEstimates& lights) const {
   const auto exact = indirect_illumination_by_light(tracer_, gather_, light_positions(lights));

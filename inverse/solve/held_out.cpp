@@ -50,7 +50,7 @@ HeldOut::HeldOut(const renderer::RayTracer& tracer, const std::vector<renderer::
                                     .rays_per_point = kRaysPerPoint,
                                     .bounces = settings.bounces,
                                     .seed = settings.seed},
-                                   {.report = {}, .report_noise = {}, .interrupted = control.interrupted})),
+                                   control.without_progress())),
       nothing_(cache_of_nothing(receivers.size())),
       response_(tracer, receivers, nothing_) {}
 

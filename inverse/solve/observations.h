@@ -48,14 +48,13 @@ Observations standing_for_all(const Observations& observations);
 // What some of the receivers say.
 Observations rows_of(const Observations& observations, const std::vector<std::size_t>& rows);
 
-inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-
 // A light being sought.
 struct LightEstimate {
   Eigen::Vector3d position;  // metres
   Eigen::Array3d intensity;  // candela per channel, ≥ 0
   Column correction{};       // added to its unity response wherever it moves; empty: none
-  Eigen::Vector3d corrected_at = Eigen::Vector3d::Constant(kNowhere);  // where the correction was made exact
+  // Where the correction was made exact; nowhere: it was not.
+  Eigen::Vector3d corrected_at = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 using LightEstimates = std::vector<LightEstimate>;
 

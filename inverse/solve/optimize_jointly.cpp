@@ -107,10 +107,14 @@ RefittedLights refitted_to_held_out(SetsByHeldOut sets, LightEstimates lights, s
   double least = all.error;
   std::vector<std::pair<LightEstimates, double>> fewer;
   for (LightSet& set : curve) {
+    if (set.lights.size() == lights.size()) {
+      set = set_of(lights, all.relative_l2);
+      continue;
+    }
     LightEstimates refitted = light_estimates(set.lights);
     const HeldOutFit fit = sets.refit(refitted);
-    set = refitted.size() == lights.size() ? set_of(lights, all.relative_l2) : set_of(refitted, fit.relative_l2);
-    if (!fewer_may_do || refitted.size() >= lights.size()) continue;
+    set = set_of(refitted, fit.relative_l2);
+    if (!fewer_may_do || refitted.size() > lights.size()) continue;
     least = std::min(least, fit.error);
     fewer.emplace_back(std::move(refitted), fit.error);
   }
@@ -160,6 +164,8 @@ void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
 }
 
 }  // namespace
+
+LightEstimates all_of(const JointLights& found) { return joined(found.beside_surfaces, found.others); }
 
 LightSet set_of(const LightEstimates& lights, double relative_l2) {
   LightSet set{{}, relative_l2};
@@ -244,7 +250,7 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   // Noise of the target, and of the transport that was searched by.
   const double far_from_target = std::max(kFarFromTarget, kFarNoise * search.searched.noise);
   const bool far = found.beside_surfaces.empty() && found.error > far_from_target;
-  const LightEstimates as_found = joined(found.beside_surfaces, found.others);
+  const LightEstimates as_found = all_of(found);
   const bool refitted = !as_found.empty() && !found.out_of_time && !explained && (far || tied);
   RefittedLights at_last{as_found, found.error_curve};
   if (refitted && search.held_out != nullptr) {

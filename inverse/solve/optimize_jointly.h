@@ -48,6 +48,9 @@ struct JointLights {
   std::vector<LightSet> error_curve;
 };
 
+// Those beside surfaces come first.
+LightEstimates all_of(const JointLights& found);
+
 // They leave nothing but noise, or nearly so.
 bool is_explained(const JointLights& found);
 

@@ -164,9 +164,7 @@ void RegionSearch::see_how_far_held_out_ones_are(const RegionSearch* before, Sta
   const bool known = found_.held_out.size() > 0 || !(compared || tells);
   if (known || found_.out_of_time || clock.out_of_time()) return;
   share_or_hold_out(before, clock);
-  LightEstimates all = found_.beside_surfaces;
-  all.insert(all.end(), found_.others.begin(), found_.others.end());
-  found_.held_out = HeldOutSets(*held_out_, 0).residuals(all);
+  found_.held_out = HeldOutSets(*held_out_, 0).residuals(all_of(found_));
 }
 
 void RegionSearch::share_or_hold_out(const RegionSearch* before, StageClock& clock) {

@@ -58,12 +58,6 @@ void put_into(TransportCache& cache, const TransportBlock& block) {
   }
 }
 
-renderer::Control without_progress(const renderer::Control& control) {
-  renderer::Control quiet;
-  quiet.interrupted = control.interrupted;
-  return quiet;
-}
-
 }  // namespace
 
 Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGrid& grid, const BakeSettings& settings,
@@ -85,7 +79,7 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
   set_memory(memory);
   if (settings.bounces == 0) return;
   start = std::chrono::steady_clock::now();
-  header_.indirect_relative_error = measure_indirect_error(without_progress(control));
+  header_.indirect_relative_error = measure_indirect_error(control.without_progress());
   summary_.check_seconds = seconds_since(start);
 }
 
@@ -172,7 +166,7 @@ void Baker::set_lights(std::size_t first, std::size_t count, const renderer::Con
 // Into illumination[0], illumination[1] …, a block of lights each.
 void Baker::gather_at_records(std::size_t first, std::size_t count, std::vector<LightBlock>* illumination,
                               const renderer::Control& control) {
-  const renderer::Control quiet = without_progress(control);
+  const renderer::Control quiet = control.without_progress();
   std::vector<std::vector<LightBlock>> of_points((count + kLightBlock - 1) / kLightBlock);
   renderer::parallel_for(of_points.size(), "", quiet, [&](std::size_t block) {
     const std::size_t at = block * kLightBlock;
@@ -234,7 +228,7 @@ void Baker::fill_indirect(TransportBlock& block, const renderer::Control& contro
 
 void Baker::bake(std::size_t first, std::size_t last, Place start,
                  const std::function<void(const TransportBlock&)>& visit, const renderer::Control& control) {
-  const renderer::Control quiet = without_progress(control);
+  const renderer::Control quiet = control.without_progress();
   set_receivers(first, last);
   const std::size_t lights = header_.grid.positions.size();
   // Of a band of lights, the gathering of indirect light counts as the first part.

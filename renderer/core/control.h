@@ -17,6 +17,8 @@ struct Control {
   const std::atomic<bool>* interrupted = nullptr;
 
   bool stop_requested() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
+  // Of a stage that is only to be asked to stop.
+  Control without_progress() const { return {.report = {}, .report_noise = {}, .interrupted = interrupted}; }
 };
 
 // Runs body(i) for 0 <= i < count on all threads allowed, reports progress under the name `stage`, and throws
