@@ -30,16 +30,21 @@ if(CHIARO_BENCHMARKS)
   require_package(benchmark libbenchmark-dev)
 endif()
 
-# Debian's OpenColorIO has no CMake configuration of its own.
-find_path(opencolorio_include OpenColorIO/OpenColorIO.h)
-find_library(opencolorio_library OpenColorIO)
-if(opencolorio_include AND opencolorio_library)
-  add_library(OpenColorIO::OpenColorIO UNKNOWN IMPORTED)
-  set_target_properties(OpenColorIO::OpenColorIO PROPERTIES
-    IMPORTED_LOCATION ${opencolorio_library} INTERFACE_INCLUDE_DIRECTORIES ${opencolorio_include})
-else()
-  string(APPEND missing_packages "\n  OpenColorIO: apt-get install libopencolorio-dev")
-endif()
+# Of which Debian has no CMake configuration.
+macro(require_library name header library debian_package)
+  find_path(${library}_include ${header})
+  find_library(${library}_library ${library})
+  if(${library}_include AND ${library}_library)
+    add_library(${name}::${name} UNKNOWN IMPORTED)
+    set_target_properties(${name}::${name} PROPERTIES
+      IMPORTED_LOCATION ${${library}_library} INTERFACE_INCLUDE_DIRECTORIES ${${library}_include})
+  else()
+    string(APPEND missing_packages "\n  ${name}: apt-get install ${debian_package}")
+  endif()
+endmacro()
+
+require_library(OpenColorIO OpenColorIO/OpenColorIO.h OpenColorIO libopencolorio-dev)
+require_library(WebP webp/decode.h webp libwebp-dev)
 
 # Scripts that the report's page embeds.
 macro(require_script variable file debian_package)

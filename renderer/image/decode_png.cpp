@@ -80,7 +80,7 @@ class PngReader {
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
 
-  PngHeader header() {
+  SamplesHeader header() {
     run(read_header);
     return {int(png_get_image_width(reading_.png, reading_.info)),
             int(png_get_image_height(reading_.png, reading_.info)), png_get_channels(reading_.png, reading_.info),
@@ -88,7 +88,7 @@ class PngReader {
   }
 
   // After the header.
-  std::vector<std::uint8_t> samples(const PngHeader& header) {
+  std::vector<std::uint8_t> samples(const SamplesHeader& header) {
     std::vector<std::uint8_t> samples(header.bytes());
     const std::size_t row = samples.size() / std::size_t(header.height);
     for (int y = 0; y < header.height; ++y) reading_.rows.push_back(&samples[std::size_t(y) * row]);
@@ -112,7 +112,7 @@ class PngReader {
 
 bool is_png(std::string_view encoded) { return encoded.starts_with(kSignature); }
 
-PngHeader read_png_header(std::string_view encoded, const std::string& file) {
+SamplesHeader read_png_header(std::string_view encoded, const std::string& file) {
   return PngReader(encoded, file).header();
 }
 

@@ -16,6 +16,7 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/image/decode_png.h"
+#include "renderer/image/decode_webp.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/exr_header.h"
 #include "renderer/image/read_through_library.h"
@@ -25,6 +26,7 @@ namespace {
 
 constexpr float kMaxHalf = 65504.0F;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 31;
+constexpr std::int64_t kMaxPadded = std::int64_t{1} << 27;  // pixels of a picture that there is only a part of
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -72,27 +74,29 @@ bool has_extension(const std::filesystem::path& path, std::initializer_list<std:
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
-// Empty: it is none.
-std::string bytes_if_png(const std::filesystem::path& path) {
-  std::string first(8, 0);
+// Of a PNG or a WebP, which are decoded here; empty: it is neither.
+std::string bytes_to_decode(const std::filesystem::path& path) {
+  std::string first(12, 0);
   std::ifstream(path, std::ios::binary).read(first.data(), std::streamsize(first.size()));
-  return is_png(first) ? read_file(path) : "";
+  return is_png(first) || is_webp(first) ? read_file(path) : "";
 }
 
 struct OpenImage {
-  std::string png;  // all of its bytes, where it is one
-  PngHeader header{};
+  std::string encoded;  // all bytes of a PNG or a WebP
+  SamplesHeader header{};
   std::unique_ptr<OIIO::Filesystem::IOMemReader> reader{};
   std::unique_ptr<OIIO::ImageInput> input{};
 };
 
-// A PNG's header is known to be right before OpenImageIO sees it, and so are the bytes.
+// Their header is known to be right before OpenImageIO sees it, and so are the bytes.
 OpenImage open(const std::filesystem::path& path) {
   require_file(path, "an image");
-  OpenImage image{bytes_if_png(path)};
-  if (!image.png.empty()) {
-    image.header = read_png_header(image.png, path.string());
-    image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.png.data(), image.png.size());
+  OpenImage image{bytes_to_decode(path)};
+  const bool webp = is_webp(image.encoded);
+  if (!image.encoded.empty()) {
+    image.header =
+        webp ? read_webp_header(image.encoded, path.string()) : read_png_header(image.encoded, path.string());
+    image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
   } else if (has_extension(path, {".jpg", ".jpeg"})) {
     if (const auto damage = find_jpeg_damage(read_file(path))) {
       throw Error({path.string(), "", *damage, "a whole image"});
@@ -104,7 +108,8 @@ OpenImage open(const std::filesystem::path& path) {
   if (OIIO::Filesystem::IOProxy* reader = image.reader.get()) {
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &reader);  // its reader of PNG looks here alone
   }
-  image.input = OIIO::ImageInput::open(image.reader ? "image.png" : path.string(), &config, image.reader.get());
+  image.input = OIIO::ImageInput::open(image.reader ? (webp ? "image.webp" : "image.png") : path.string(), &config,
+                                       image.reader.get());
   if (!image.input) {
     const std::string reason = first_line(OIIO::geterror());
     throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), ""});
@@ -122,11 +127,30 @@ void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
                "a flat image of a sensible size"});
 }
 
+// The part of the picture that there are pixels of, as OpenEXR's data window within its display window.
+bool is_cropped(const OIIO::ImageSpec& spec) {
+  return spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+         spec.height != spec.full_height;
+}
+
+// Of the whole picture.
+void check_window(const OIIO::ImageSpec& spec, const std::string& file) {
+  if (!is_cropped(spec)) return;
+  if (spec.full_width > 0 && spec.full_height > 0 && std::int64_t(spec.full_width) * spec.full_height <= kMaxPadded) {
+    return;
+  }
+  throw Error({file, "displayWindow",
+               fmt::format("{} x {} pixels around a data window of {} x {}", spec.full_width, spec.full_height,
+                           spec.width, spec.height),
+               fmt::format("at most {} pixels", kMaxPadded)});
+}
+
 ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& path) {
   const OIIO::ImageSpec& spec = input.spec();
   check_size(spec, path.string());
+  check_window(spec, path.string());
   ImageFile file;
-  file.image = Image{spec.width, spec.height, spec.channelnames, {}};
+  file.image = Image{spec.full_width, spec.full_height, spec.channelnames, {}};
   const bool exr = std::strcmp(input.format_name(), "openexr") == 0;
   file.whole_numbers = !spec.format.is_floating_point();
   file.srgb_curve =
@@ -225,8 +249,9 @@ void write_through_memory(const Image& image, const std::filesystem::path& path,
   });
 }
 
-void read_png_pixels(const OpenImage& open, const std::string& file, Image& image) {
-  const std::vector<std::uint8_t> samples = decode_png(open.png, file);
+void decode_pixels(const OpenImage& open, const std::string& file, Image& image) {
+  const std::vector<std::uint8_t> samples =
+      is_webp(open.encoded) ? decode_webp(open.encoded, file) : decode_png(open.encoded, file);
   const bool wide = open.header.bytes_per_sample == 2;
   CHIARO_CHECK(samples.size() == image.pixels.size() * (wide ? 2 : 1));
   OIIO::convert_image(image.channel_count(), image.width, image.height, 1, samples.data(),
@@ -235,9 +260,22 @@ void read_png_pixels(const OpenImage& open, const std::string& file, Image& imag
 }
 
 void read_pixels(OpenImage& open, const std::string& file, Image& image) {
-  if (!open.png.empty()) return read_png_pixels(open, file, image);
+  if (!open.encoded.empty()) return decode_pixels(open, file, image);
   if (open.input->read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) return;
   throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(open.input->geterror())), "a whole file"});
+}
+
+// The whole picture: black and transparent where there are no pixels of it, without those beyond its edges.
+Image in_window(const Image& part, const OIIO::ImageSpec& spec) {
+  Image whole = make_image(spec.full_width, spec.full_height, part.channel_names);
+  const std::int64_t left = std::int64_t(spec.x) - spec.full_x, top = std::int64_t(spec.y) - spec.full_y;
+  const std::int64_t first = std::max<std::int64_t>(0, left), last = std::min(whole.width + 0L, left + part.width);
+  const std::int64_t end = std::min(whole.height + 0L, top + part.height);
+  for (std::int64_t y = std::max<std::int64_t>(0, top); y < end && first < last; ++y) {
+    const float* const from = part.at(int(first - left), int(y - top));
+    std::copy_n(from, (last - first) * part.channel_count(), whole.at(int(first), int(y)));
+  }
+  return whole;
 }
 
 ImageFile read_image(const std::filesystem::path& path) {
@@ -246,9 +284,10 @@ ImageFile read_image(const std::filesystem::path& path) {
   if (!may_hold(std::filesystem::file_size(path), opened.input->spec().image_bytes(true))) {
     throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
   }
-  Image& image = file.image;
-  image = make_image(image.width, image.height, std::move(image.channel_names));
+  const OIIO::ImageSpec& spec = opened.input->spec();
+  Image image = make_image(spec.width, spec.height, std::move(file.image.channel_names));
   read_pixels(opened, path.string(), image);
+  file.image = is_cropped(spec) ? in_window(image, spec) : std::move(image);
   return file;
 }
 

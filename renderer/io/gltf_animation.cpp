@@ -84,8 +84,12 @@ class AnimationReader {
     const GltfAnimation& animation = document_.json.animations[std::size_t(animation_)];
     for (std::size_t c = 0; c < animation.channels.size(); ++c) {
       const GltfAnimationChannel& channel = animation.channels[c];
-      if (channel.node < 0) continue;
       const std::string place = fmt::format("animations[{}].channels[{}]", animation_, c);
+      if (channel.node < 0) {
+        // What it moves is no node.
+        if (channel.path == "pointer") warnings.push_back(place + ": \"pointer\" is not animated here");
+        continue;
+      }
       if (is_moved(channel, place, warnings)) set(channel, place, seconds, pose[channel.node]);
     }
   }

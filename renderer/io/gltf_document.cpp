@@ -97,4 +97,9 @@ std::string image_bytes(const GltfDocument& document, int image) {
   return std::string(buffer_view_bytes(document, source.buffer_view));
 }
 
+const tinygltf::Scene* shown_scene(const GltfDocument& document) {
+  const std::vector<tinygltf::Scene>& scenes = document.model->scenes;
+  return scenes.empty() ? nullptr : &scenes[std::size_t(std::max(0, document.model->defaultScene))];
+}
+
 }  // namespace chiaro::renderer

@@ -13,6 +13,7 @@
 
 namespace tinygltf {
 class Model;
+struct Scene;
 }
 
 namespace chiaro::renderer {
@@ -41,6 +42,9 @@ std::string_view buffer_view_bytes(const GltfDocument& document, int buffer_view
 
 // The encoded bytes of an image.
 std::string image_bytes(const GltfDocument& document, int image);
+
+// The file's scene, or its first where it names none; null: it has none.
+const tinygltf::Scene* shown_scene(const GltfDocument& document);
 
 [[noreturn]] void fail(const GltfDocument& document, const std::string& place, const std::string& problem,
                        const std::string& expected = "");

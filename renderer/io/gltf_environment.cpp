@@ -28,12 +28,8 @@ std::optional<int> light_of(const tinygltf::Scene& scene) {
 }
 
 std::optional<int> light_of(const GltfDocument& document) {
-  const tinygltf::Model& model = *document.model;
-  if (model.defaultScene >= 0) return light_of(model.scenes[std::size_t(model.defaultScene)]);
-  for (const tinygltf::Scene& scene : model.scenes) {
-    if (const auto light = light_of(scene)) return light;
-  }
-  return std::nullopt;
+  const tinygltf::Scene* const scene = shown_scene(document);
+  return scene != nullptr ? light_of(*scene) : std::nullopt;
 }
 
 Texture decode(const GltfDocument& document, int image) {

@@ -93,8 +93,9 @@ bool is_hidden(const tinygltf::Node& node) {
          !extension->second.Get("visible").Get<bool>();
 }
 
+// Of all nodes, in a file without scenes.
 std::vector<int> roots_of(const GltfDocument& document, const std::vector<int>& parents) {
-  if (document.model->defaultScene >= 0) return document.model->scenes[document.model->defaultScene].nodes;
+  if (const tinygltf::Scene* const scene = shown_scene(document)) return scene->nodes;
   std::vector<int> roots;
   for (std::size_t i = 0; i < parents.size(); ++i) {
     if (parents[i] == kNoParent) roots.push_back(int(i));

@@ -22,7 +22,7 @@ struct PlacedNode {
 // parents, and transforms that are not finite.
 std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose& pose = {});
 
-// The visible nodes of the default scene, or of all scenes where there is no default one, parents before children.
+// The visible nodes of the scene that is shown, or of a file without scenes, parents before children.
 // Error as world_from_nodes.
 std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose& pose = {});
 

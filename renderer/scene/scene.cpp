@@ -51,6 +51,16 @@ void add(Fingerprint& f, const std::vector<T>& values) {
   f.add_all(std::span<const T>(values));
 }
 
+void add(Fingerprint& f, const Texture& texture) {
+  f.add(texture.width);
+  f.add(texture.height);
+  f.add(texture.nearest);
+  f.add(texture.wrap_u);
+  f.add(texture.wrap_v);
+  f.add(texture.filtered_as_stored);
+  add(f, texture.rgba);
+}
+
 }  // namespace
 
 Box3f bounds(const Scene& scene) {
@@ -82,7 +92,7 @@ std::string fingerprint(const Scene& scene) {
     f.add(instance.world_from_object);
   }
   for (const Material& material : scene.materials) add(f, material);
-  for (const Texture& texture : scene.textures) add(f, texture.rgba);
+  for (const Texture& texture : scene.textures) add(f, texture);
   return f.text();
 }
 

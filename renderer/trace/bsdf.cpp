@@ -55,6 +55,11 @@ float Bsdf::below_layers(Vec3f to_viewer, Vec3f to_light) const {
 }
 
 Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) const {
+  const Vec3f below = eval_below_clearcoat(to_viewer, to_light, source);
+  return has_clearcoat_towards(to_light) ? below + layers_->clearcoat.eval(to_viewer, to_light, source) : below;
+}
+
+Vec3f Bsdf::eval_below_clearcoat(Vec3f to_viewer, Vec3f to_light, LightSource source) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
   if (wo.z <= 0 || !sees(to_light, wi.z)) return {};
   if (!base_) return wi.z > 0 ? (shadow_terminator(to_light) * wi.z * kInvPi) * base_color_ : Vec3f{};
@@ -62,8 +67,13 @@ Vec3f Bsdf::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) const {
   if (!layers_) return value;
   value *= below_layers(to_viewer, to_light);
   if (layers_->sheen.present()) value += layers_->clearcoat.below(to_viewer, to_light) * layers_->sheen.eval(wo, wi);
-  if (layers_->clearcoat.present() && wi.z > 0) value += layers_->clearcoat.eval(to_viewer, to_light, source);
   return value;
+}
+
+// Its normal is another than that of what it covers.
+bool Bsdf::has_clearcoat_towards(Vec3f to_light) const {
+  return layers_ && layers_->clearcoat.present() && sees(to_light, layers_->clearcoat.cosine(to_light)) &&
+         layers_->clearcoat.cosine(to_light) > 0;
 }
 
 Bsdf::Choice Bsdf::choice(Vec3f to_viewer, Vec3f wo) const {
@@ -77,12 +87,18 @@ Bsdf::Choice Bsdf::choice(Vec3f to_viewer, Vec3f wo) const {
 
 float Bsdf::pdf(Vec3f to_viewer, Vec3f to_light) const {
   const Vec3f wo = frame_.local_from_world(to_viewer), wi = frame_.local_from_world(to_light);
-  if (wo.z <= 0 || !sides_agree(to_light, wi.z)) return 0;
-  if (!base_) return wi.z > 0 ? wi.z * kInvPi : 0;
+  if (wo.z <= 0) return 0;
+  const bool sides_agree_below = sides_agree(to_light, wi.z);
+  if (!base_) return sides_agree_below && wi.z > 0 ? wi.z * kInvPi : 0;
   const Choice p = choice(to_viewer, wo);
-  float pdf = p.base() * base_->pdf(wo, wi);
-  if (p.sheen > 0) pdf += p.sheen * BsdfSheen::pdf(wi);
-  if (p.clearcoat > 0) pdf += p.clearcoat * layers_->clearcoat.pdf(to_viewer, to_light);
+  float pdf = 0;
+  if (sides_agree_below) {
+    pdf = p.base() * base_->pdf(wo, wi);
+    if (p.sheen > 0) pdf += p.sheen * BsdfSheen::pdf(wi);
+  }
+  if (p.clearcoat > 0 && sides_agree(to_light, layers_->clearcoat.cosine(to_light))) {
+    pdf += p.clearcoat * layers_->clearcoat.pdf(to_viewer, to_light);
+  }
   return pdf;
 }
 

@@ -55,6 +55,8 @@ class Bsdf {
     float base() const { return 1 - clearcoat - sheen; }
   };
   Choice choice(Vec3f to_viewer, Vec3f wo) const;
+  Vec3f eval_below_clearcoat(Vec3f to_viewer, Vec3f to_light, LightSource source) const;
+  bool has_clearcoat_towards(Vec3f to_light) const;
   float below_layers(Vec3f to_viewer, Vec3f to_light) const;
   bool sides_agree(Vec3f direction, float local_z) const { return dot(direction, geometric_normal_) * local_z > 0; }
   bool sees(Vec3f direction, float local_z) const;

@@ -1,6 +1,7 @@
 #include "renderer/trace/clear_surfaces.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "renderer/trace/bsdf.h"
 
@@ -15,12 +16,51 @@ Vec3f absorbed(Vec3f absorption, float distance) {
 
 }  // namespace
 
+Media Media::at(const RayTracer& tracer, Vec3f position) {
+  struct Votes {
+    Solid solid;
+    int inside = 0;
+    float distance = kInfinity;
+  };
+  // None along an axis, where surfaces often lie.
+  constexpr Vec3f kDirections[] = {{0.88F, 0.31F, 0.36F},   {-0.83F, 0.41F, -0.38F}, {0.29F, 0.90F, -0.33F},
+                                   {-0.35F, -0.87F, 0.34F}, {0.42F, -0.27F, -0.87F}, {-0.33F, 0.24F, 0.91F}};
+  std::vector<Votes> met;
+  for (const Vec3f& direction : kDirections) {
+    std::vector<int> seen;  // materials
+    Ray ray{position, direction, 0, kInfinity, 0};
+    float distance = 0;
+    for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
+      const auto hit = tracer.intersect(ray);
+      if (!hit) break;
+      const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
+      distance += hit->distance;
+      ray.origin = point_behind(point);
+      const bool boundary = point.layers && point.layers->solid;
+      if (!boundary || std::find(seen.begin(), seen.end(), point.material) != seen.end()) continue;
+      seen.push_back(point.material);
+      auto votes =
+          std::find_if(met.begin(), met.end(), [&](const Votes& v) { return v.solid.material == point.material; });
+      if (votes == met.end()) votes = met.insert(met.end(), {{point.material, point.layers->absorption}});
+      votes->inside += point.front ? -1 : 1;
+      if (!point.front) votes->distance = std::min(votes->distance, distance);
+    }
+  }
+  std::erase_if(met, [](const Votes& v) { return v.inside <= 0; });
+  // The innermost, whose boundary is the nearest, comes last.
+  std::stable_sort(met.begin(), met.end(), [](const Votes& a, const Votes& b) { return a.distance > b.distance; });
+  Media media;
+  for (const Votes& votes : met) media.enter(votes.solid);
+  return media;
+}
+
+void Media::enter(const Solid& solid) {
+  if (count_ < kMost) inside_[count_++] = solid;
+}
+
 void Media::cross(const SurfacePoint& surface) {
   if (!surface.layers || !surface.layers->solid) return;
-  if (surface.front) {
-    if (count_ < kMost) inside_[count_++] = {surface.material, surface.layers->absorption};
-    return;
-  }
+  if (surface.front) return enter({surface.material, surface.layers->absorption});
   for (int i = count_ - 1; i >= 0; --i) {
     if (inside_[i].material != surface.material) continue;
     std::copy(inside_.begin() + i + 1, inside_.begin() + count_, inside_.begin() + i);

@@ -17,10 +17,14 @@ inline constexpr int kMostClearSurfaces = 1000;
 // The solids that a point is inside of, as far as its path knows.
 class Media {
  public:
+  // Of a point that is on no surface: those that rays from there leave before they enter them, by most of the rays that
+  // meet them at all. So an open surface, such as that of a lake, is as good as a closed one.
+  static Media at(const RayTracer& tracer, Vec3f position);
+
   // Through the surface, by way of its boundary: into a solid from its front, out of it from its back.
   void cross(const SurfacePoint& surface);
   // What arrives over the last `distance` metres to `surface`. Behind the back of a boundary is its solid, whether the
-  // path knows of it or not: a camera may stand inside.
+  // path knows of it or not.
   Vec3f transmittance(const SurfacePoint& surface, float distance) const;
   // Of the innermost solid.
   Vec3f transmittance(float distance) const;
@@ -31,6 +35,8 @@ class Media {
     int material = 0;
     Vec3f absorption;
   };
+  void enter(const Solid& solid);
+
   static constexpr int kMost = 4;  // nested in each other; more do not absorb
   std::array<Solid, kMost> inside_;
   int count_ = 0;

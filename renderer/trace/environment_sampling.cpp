@@ -46,9 +46,7 @@ EnvironmentSampling::EnvironmentSampling(const EnvironmentLight& light)
     for (int column = 0; column < columns_; ++column) sum += double(cell_luminance(column, row));
     mean += sum / columns_ * double(top_cosine(row) - top_cosine(row + 1)) / 2;
   }
-  // Where hardly any more than the mean is anywhere, as in a map of one colour, nothing is taken off.
   make_density(float(mean));
-  if (!(row_end_.back() > 0)) make_density(0);
 }
 
 float EnvironmentSampling::top_cosine(int row) const {
@@ -64,26 +62,20 @@ float EnvironmentSampling::cell_luminance(int column, int row) const {
 }
 
 void EnvironmentSampling::make_density(float taken_off) {
-  constexpr double kLeast = 1e-3;  // of the luminance, that must stay
-  std::vector<double> row_weight(std::size_t(rows_), 0.0), row_all(std::size_t(rows_), 0.0);
+  constexpr float kStays = 0.1F;  // of the luminance, at least
+  std::vector<double> row_weight(std::size_t(rows_), 0.0);
   parallel_for(std::size_t(rows_), [&](std::size_t row) {
     std::vector<double> weight(std::size_t(columns_), 0.0);
     const double solid_angle = double(top_cosine(int(row)) - top_cosine(int(row) + 1)) * 2 * double(kPi) / columns_;
     for (int column = 0; column < columns_; ++column) {
-      const float all = cell_luminance(column, int(row)), left = std::max(0.0F, all - taken_off);
+      const float all = cell_luminance(column, int(row)), left = std::max(kStays * all, all - taken_off);
       density_[row * std::size_t(columns_) + std::size_t(column)] = left;
       weight[std::size_t(column)] = double(left) * solid_angle;
-      row_all[row] += double(all) * solid_angle;
     }
     row_weight[row] = accumulate(weight.data(), columns_, &column_end_[row * std::size_t(columns_)]);
   });
   const double total = accumulate(row_weight.data(), rows_, row_end_.data());
-  double all = 0;
-  for (const double weight : row_all) all += weight;
-  if (!(total > kLeast * all)) {
-    row_end_.back() = 0;
-    return;
-  }
+  if (!(total > 0)) return;  // nothing comes from anywhere
   for (float& density : density_) density = float(double(density) / total);
 }
 

@@ -4,8 +4,9 @@
 // The map is bilinear between the middles of its pixels, so the cells of the density are the squares between them: the
 // mean of a cell's corners, times its solid angle. Within a cell directions are uniform per steradian, so that the
 // radiance is at most four times what the density expects.
-// The mean radiance over the sphere is taken off the density: scattered rays find that as well.
-// Source of the last: Karlík, Šik, Vévoda, Skřivan, Křivánek, MIS Compensation: Optimizing Sampling Techniques in
+// The mean radiance over the sphere is taken off the density: scattered rays find that as well. A part always stays, as
+// none is scattered to below a triangle's horizon, where a smooth surface sees the sky.
+// Source of the last but for that part: Karlík, Šik, Vévoda, Skřivan, Křivánek, MIS Compensation: Optimizing Sampling Techniques in
 // Multiple Importance Sampling, 2019 (section 5.1).
 
 #include <vector>

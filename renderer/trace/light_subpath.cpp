@@ -13,7 +13,7 @@ std::vector<PathTracer::LightVertex> PathTracer::trace_light_subpath(Sampler& sa
   const float pick = sampler.next_1d();
   const PunctualEmission::Sample from = emission_.sample(pick, sampler.next_2d());
   Ray ray{from.origin, from.direction, 0, subpath_reach_, sampler.next_bits()};
-  Media media;
+  Media media = light_media_.empty() ? Media() : light_media_[from.light];
   Vec3f through{1, 1, 1};
   float distance = 0;
   std::vector<LightVertex> vertices;
@@ -64,7 +64,7 @@ void PathTracer::connect(const Vertex& v, const LightVertex& end, Vec3f throughp
   if (!(max_component(value) > 0) || !is_finite(value)) return;
   Ray between = ray_between(v.ray_origin(to_end), y.ray_end(distance), path.sampler.next_bits());
   between.clear = ClearSurfaces::kPassThin;
-  path.light.add(v.index + 1, from.light, end.through * light_along(between, v.media) * value);
+  path.light.add(v.index + 1, from.light, end.through * light_along(between, v.media_towards(to_end)) * value);
 }
 
 }  // namespace chiaro::renderer

@@ -29,6 +29,13 @@ const Scene& scene_without_emission() {
   return empty;
 }
 
+// Where its rays begin.
+Media media_around(const RayTracer& tracer, const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light)) return Media::at(tracer, point->position);
+  if (const auto* spot = std::get_if<SpotLight>(&light)) return Media::at(tracer, spot->position);
+  return {};
+}
+
 // Finer than floats, so that none of very many lights is out of reach.
 double next_fine(Sampler& sampler) {
   const double coarse = double(sampler.next_1d());
@@ -54,6 +61,8 @@ PathTracer::PathTracer(const RayTracer& tracer, const Lights& lights, const Trac
       environments_.push_back({i, EnvironmentSampling(*light)});
     }
   }
+  if (!solids_) return;
+  for (const Light& light : lights) light_media_.push_back(media_around(tracer, light));
 }
 
 // rough: after rough scattering.
@@ -76,6 +85,17 @@ PathTracer::Vertex PathTracer::vertex_at(const SurfacePoint& point, const Bsdf& 
           .punctual = punctual_source(false)};
 }
 
+// behind: where the vertex may keep those of its other side.
+void PathTracer::know_media(Vertex& vertex, const SurfacePoint& point, const Media& media,
+                            std::optional<Media>& behind) const {
+  if (!solids_) return;
+  vertex.media = &media;
+  if (!vertex.transmits()) return;
+  behind = media;
+  behind->cross(point);
+  vertex.behind = &*behind;
+}
+
 // 0: nothing arrives, 1: nothing is in between.
 Vec3f PathTracer::light_along(const Ray& ray, const Media* media) const {
   const Passage passage = tracer_.passage(ray);
@@ -91,7 +111,7 @@ Vec3f PathTracer::light_through(const Vertex& v, const LightSample& from, std::u
   ray.far = from.distance == kInfinity ? kInfinity : from.distance * (1 - kShort);
   ray.alpha_seed = alpha_seed;
   ray.clear = from.clear;
-  if (!v.sees_past_triangle(from.to_light)) return light_along(ray, v.media);
+  if (!v.sees_past_triangle(from.to_light)) return light_along(ray, v.media_towards(from.to_light));
   const Vec3f lifted = offset_point(v.position + v.lift, v.normal, v.rounding);
   Ray up = ray;
   up.direction = lifted - ray.origin, up.far = 1;
@@ -277,7 +297,8 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
     Vertex vertex = vertex_at(point, bsdf, to_viewer, index);
     vertex.area_pdf = scattered.pdf * cosine / (distance * distance);
     vertex.punctual = punctual_source(scattered.rough);
-    vertex.media = solids_ ? &scattered.media : nullptr;
+    std::optional<Media> behind;
+    know_media(vertex, point, scattered.media, behind);
     add_lights(vertex, throughput, path);
     if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
     if (!scatter(vertex, point, path.sampler, scattered, throughput)) return;
@@ -293,39 +314,49 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
   }
 }
 
-void PathTracer::add_scattered(const SurfacePoint& point, Vec3f to_viewer, int index, Vec3f throughput,
-                               Sampler& sampler, PathLight& light) const {
+void PathTracer::add_scattered(const SurfacePoint& point, const Media& media, Vec3f to_viewer, int index,
+                               Vec3f throughput, Sampler& sampler, PathLight& light) const {
   if (point.unlit) return;
   const Bsdf bsdf(point);
-  const Vertex vertex = vertex_at(point, bsdf, to_viewer, index);
+  Vertex vertex = vertex_at(point, bsdf, to_viewer, index);
+  std::optional<Media> behind;
+  know_media(vertex, point, media, behind);
   Path path = start_path(sampler, light);
   add_lights(vertex, throughput, path);
   if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
   ScatteredRay ray{
-      .origin = point.position + to_viewer, .direction = -to_viewer, .position = {}, .normal = {}, .media = {}};
+      .origin = point.position + to_viewer, .direction = -to_viewer, .position = {}, .normal = {}, .media = media};
   if (!scatter(vertex, point, sampler, ray, throughput)) return;
   trace(ray, ray.travelled == 0 ? index + 1 : index, throughput, path);
 }
 
-void PathTracer::add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const {
-  Path path{sampler, light, {}};
-  add_all_punctual({position, normal, 0, normal, nullptr, 0}, {1, 1, 1}, path);
+PathTracer::Vertex PathTracer::vertex_at(const Receiver& receiver) const {
+  Vertex vertex{receiver.position, receiver.normal, 0, receiver.normal, nullptr, 0};
+  vertex.media = solids_ ? &receiver.media : nullptr;
+  return vertex;
 }
 
-void PathTracer::add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler,
+void PathTracer::add_punctual_illumination(const Receiver& receiver, Sampler& sampler, PathLight& light) const {
+  Path path{sampler, light, {}};
+  add_all_punctual(vertex_at(receiver), {1, 1, 1}, path);
+}
+
+void PathTracer::add_illumination(const Receiver& receiver, bool with_punctual, Sampler& sampler,
                                   PathLight& light) const {
-  const Vertex vertex{position, normal, 0, normal, nullptr, 0};
+  const Vertex vertex = vertex_at(receiver);
   Path path = start_path(sampler, light);
   if (with_punctual) add_punctual(vertex, {1, 1, 1}, path);
   add_indirect_illumination(vertex, path);
 }
 
-void PathTracer::add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const {
+void PathTracer::add_illumination(const SurfacePoint& point, const Media& media, Sampler& sampler,
+                                  PathLight& light) const {
   // Rays start along the shading normal, which leans: as far off the surface as they would along the geometric one.
   constexpr float kLeastCosine = 0.1F;
   const Vec3f normal = point.shading_normal;
   const float rounding = point.rounding / std::max(kLeastCosine, dot(normal, point.geometric_normal));
-  const Vertex vertex{point.position, normal, rounding, normal, nullptr, 0, 0, point.lift, point.geometric_normal};
+  Vertex vertex{point.position, normal, rounding, normal, nullptr, 0, 0, point.lift, point.geometric_normal};
+  vertex.media = solids_ ? &media : nullptr;
   Path path = start_path(sampler, light);
   add_punctual(vertex, {1, 1, 1}, path);
   add_indirect_illumination(vertex, path);
@@ -344,7 +375,7 @@ void PathTracer::add_indirect_illumination(const Vertex& vertex, Path& path) con
          .position = vertex.position,
          .normal = vertex.pick_normal(),
          .rough = true,
-         .media = {}},
+         .media = vertex.media != nullptr ? *vertex.media : Media()},
         1, {1, 1, 1}, path);
 }
 

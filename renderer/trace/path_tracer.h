@@ -12,6 +12,7 @@
 //
 // Source: Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997 (balance heuristic: eq. 9.8; ch. 10).
 
+#include <optional>
 #include <vector>
 
 #include "renderer/core/sampler.h"
@@ -43,26 +44,35 @@ struct PathLight {
 
 class PathTracer {
  public:
+  // A point on a surface that is white.
+  struct Receiver {
+    Vec3f position, normal;
+    Media media{};  // on the side of the normal
+  };
+
   // Keeps references to all, which must outlive it. How many samples are taken is the caller's business, and so is to
   // let `visibility` learn; nullptr: nothing is learnt.
   PathTracer(const RayTracer& tracer, const Lights& lights, const TraceOptions& options,
              LightVisibility* visibility = nullptr);
 
+  // The solids that a point is inside of, which absorb what comes to it. It is on no surface.
+  Media media_at(Vec3f position) const { return solids_ ? Media::at(tracer_, position) : Media(); }
+
   // Radiance leaving `vertex` towards to_viewer, its emission left out, times `throughput`, added to `light`.
-  // `index` is the number of `vertex` on its path.
-  void add_scattered(const SurfacePoint& vertex, Vec3f to_viewer, int index, Vec3f throughput, Sampler& sampler,
-                     PathLight& light) const;
+  // `index` is the number of `vertex` on its path. media: on the viewer's side.
+  void add_scattered(const SurfacePoint& vertex, const Media& media, Vec3f to_viewer, int index, Vec3f throughput,
+                     Sampler& sampler, PathLight& light) const;
 
   // What a ray of the camera that meets nothing sees, times `throughput`: environments.
   void add_background(Vec3f direction, Vec3f throughput, PathLight& light) const;
 
   // Illumination (irradiance / π) of a surface point by one path. `with_punctual`: its direct light from punctual
   // lights too.
-  void add_illumination(Vec3f position, Vec3f normal, bool with_punctual, Sampler& sampler, PathLight& light) const;
+  void add_illumination(const Receiver& receiver, bool with_punctual, Sampler& sampler, PathLight& light) const;
   // The same of a point that a ray has met, by its shading normal, with punctual lights.
-  void add_illumination(const SurfacePoint& point, Sampler& sampler, PathLight& light) const;
+  void add_illumination(const SurfacePoint& point, const Media& media, Sampler& sampler, PathLight& light) const;
   // Direct light from each punctual light, which needs no more than one sample where no surface is alpha-blended.
-  void add_punctual_illumination(Vec3f position, Vec3f normal, Sampler& sampler, PathLight& light) const;
+  void add_punctual_illumination(const Receiver& receiver, Sampler& sampler, PathLight& light) const;
 
   // Whether direct light comes from more than punctual lights, so that scattered rays find it too.
   bool has_emission() const { return !emitters_.empty() || !environments_.empty(); }
@@ -107,6 +117,7 @@ class PathTracer {
     std::vector<LightVertex> light_vertices;  // of its light subpath: one, and more behind clear surfaces
   };
   void add_indirect_illumination(const Vertex& vertex, Path& path) const;
+  Vertex vertex_at(const Receiver& receiver) const;
   void trace(ScatteredRay ray, int index, Vec3f throughput, Path& path) const;
   void add_emission(const SurfacePoint& point, const Hit& hit, const ScatteredRay& ray, int index, Vec3f throughput,
                     Path& path) const;
@@ -121,6 +132,7 @@ class PathTracer {
   void add_all_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_one_seen(const Vertex& vertex, Vec3f throughput, Path& path) const;
   void add_one_punctual(const Vertex& vertex, Vec3f throughput, Path& path) const;
+  void know_media(Vertex& vertex, const SurfacePoint& point, const Media& media, std::optional<Media>& behind) const;
   Vertex vertex_at(const SurfacePoint& point, const Bsdf& bsdf, Vec3f to_viewer, int index) const;
   Path start_path(Sampler& sampler, PathLight& light) const;
   std::vector<LightVertex> trace_light_subpath(Sampler& sampler) const;
@@ -141,7 +153,8 @@ class PathTracer {
   std::vector<Environment> environments_;
   int bounces_;
   bool wide_highlights_;
-  bool clear_surfaces_, solids_;  // in the scene
+  bool clear_surfaces_, solids_;    // in the scene
+  std::vector<Media> light_media_;  // around each light; empty: there are no solids
 };
 
 // Whether any material is alpha-blended, so that shadows are a matter of chance.

@@ -31,6 +31,9 @@ struct PathTracer::Vertex {
 
   LightSource punctual = LightSource::kPunctual;  // how punctual lights are to be seen from here
   const Media* media = nullptr;                   // on the viewer's side; nullptr: none
+  const Media* behind = nullptr;                  // on the other side, of surfaces that let light through
+
+  const Media* media_towards(Vec3f direction) const { return transmits_to(direction) ? behind : media; }
 
   Vec3f eval(Vec3f to_light, LightSource source = LightSource::kExtended) const {
     if (bsdf != nullptr) return bsdf->eval(to_viewer, to_light, source);

@@ -19,6 +19,7 @@ struct FrameTask {
   const PixelFilter& filter;
   const RenderOptions& options;
   const MatteIds& mattes;  // empty: not asked for
+  const Media media;       // that the camera is inside of
 };
 
 // One sample of a batch of a pixel.
@@ -30,11 +31,6 @@ struct SampleKey {
 Sampler make_sampler(const RenderOptions& options, const SampleKey& key) {
   const std::uint64_t seed = seed_of_batch(options.trace.seed, std::uint64_t(key.batch));
   return Sampler(seed, std::uint32_t(key.y) * std::uint32_t(options.width) + std::uint32_t(key.x), key.index);
-}
-
-// Light of the light sources that the camera sees by itself goes to the layer of the emissive surfaces.
-void add_emission(const SurfacePoint& point, std::size_t source, PixelSample& sample) {
-  sample.light.add(0, source, point.emission);
 }
 
 void reset(const RenderOptions& options, std::size_t light_layers, PixelSample& sample) {
@@ -60,7 +56,7 @@ void sample_pixel(const FrameTask& task, const SampleKey& key, const Film& film,
   const Ray ray = camera_ray(task, key, sampler);
   const auto hit = task.tracer.intersect(ray);
   if (!hit) {
-    task.paths.add_background(normalize(ray.direction), {1, 1, 1}, sample.light);
+    task.paths.add_background(normalize(ray.direction), task.media.transmittance(kInfinity), sample.light);
     sample.beauty = sample.light.direct;
     return;
   }
@@ -75,12 +71,13 @@ void sample_pixel(const FrameTask& task, const SampleKey& key, const Film& film,
     sample.object = task.mattes.objects[hit->instance];
     sample.material = task.mattes.materials[scene.meshes[scene.instances[hit->instance].mesh].material];
   }
-  add_emission(point, task.paths.emission_source(), sample);
-  task.paths.add_scattered(point, -ray.direction, 0, {1, 1, 1}, sampler, sample.light);
+  const Vec3f through = task.media.transmittance(point, hit->distance);
+  sample.light.add(0, task.paths.emission_source(), through * point.emission);
+  task.paths.add_scattered(point, task.media, -ray.direction, 0, through, sampler, sample.light);
   sample.beauty = sample.light.direct + sample.light.indirect;
   if (film.wants_illumination()) {
     PathLight light;
-    task.paths.add_illumination(point, sampler, light);
+    task.paths.add_illumination(point, task.media, sampler, light);
     sample.illumination = light.direct + light.indirect;
   }
 }
@@ -218,7 +215,8 @@ Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights
   const PixelFilter filter = options.box_filter ? PixelFilter::box() : PixelFilter::blackman_harris();
   Film film(options.width, options.height, options.layers, lights, options.trace.samples);
   const MatteIds mattes = film.wants_mattes() ? matte_ids(tracer.scene()) : MatteIds{};
-  const FrameTask task{tracer, paths, rays, filter, options, mattes};
+  const Vec3f eye = transform_point(camera.world_from_camera, {0, 0, 0});
+  const FrameTask task{tracer, paths, rays, filter, options, mattes, paths.media_at(eye)};
   Frame frame;
   frame.interrupted = add_passes(task, clock, control, learnt, film);
   frame.image = film.finish();

@@ -44,22 +44,25 @@ struct Estimate {
   Vec3f value, standard_error;
 };
 
-void add_exact(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream, PathLight& light) {
+void add_exact(const Sampling& sampling, const PathTracer::Receiver& at, std::uint32_t stream, PathLight& light) {
   Sampler sampler(sampling.options.seed, stream, 0);
-  if (!sampling.with_punctual) sampling.paths.add_punctual_illumination(at.position, at.normal, sampler, light);
+  if (!sampling.with_punctual) sampling.paths.add_punctual_illumination(at, sampler, light);
 }
 
-void add_batch(const Sampling& sampling, const SurfaceSample& at, int batch, std::uint32_t stream, PathLight& light) {
+void add_batch(const Sampling& sampling, const PathTracer::Receiver& at, int batch, std::uint32_t stream,
+               PathLight& light) {
   const std::uint64_t seed = seed_of_batch(sampling.options.seed, std::uint64_t(batch) + 1);
   for (int i = 0; i < sampling.samples_of(batch); ++i) {
     Sampler sampler(seed, stream, std::uint32_t(i));
-    sampling.paths.add_illumination(at.position, at.normal, sampling.with_punctual, sampler, light);
+    sampling.paths.add_illumination(at, sampling.with_punctual, sampler, light);
   }
 }
 
 // per_light: also what each source brings, all samples together; it has their number, or none.
-Estimate estimate(const Sampling& sampling, const SurfaceSample& at, std::uint32_t stream,
+Estimate estimate(const Sampling& sampling, const SurfaceSample& point, std::uint32_t stream,
                   std::vector<Vec3f>& per_light) {
+  const Vec3f in_front = offset_point(point.position, point.normal);
+  const PathTracer::Receiver at{point.position, point.normal, sampling.paths.media_at(in_front)};
   PathLight exact;
   exact.per_light.assign(per_light.size(), {});
   add_exact(sampling, at, stream, exact);

@@ -1,9 +1,11 @@
 #include "renderer/image/image_file.h"
 
 #include <gtest/gtest.h>
-#include <bit>
 
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 
 #include "renderer/core/atomic_file.h"
 #include "tests/renderer/io/gltf_builder.h"
@@ -117,6 +119,35 @@ TEST(ExrFile, TheSameImageIsTheSameFile) {
   save_image(layered_image(), folder / "a.exr", PixelType::kHalf);
   const std::string bytes = renderer::read_file(folder / "a.exr");
   EXPECT_EQ(bytes.find("capDate"), std::string::npos) << "no date that nobody asked for";
+}
+
+// An EXR's display window, which save_image() makes the same as its data window.
+void set_display_window(const std::filesystem::path& path, std::array<std::int32_t, 4> window) {
+  std::string bytes = renderer::read_file(path);
+  const std::string name("displayWindow\0box2i\0", 20);
+  const std::size_t at = bytes.find(name);
+  ASSERT_NE(at, std::string::npos);
+  std::memcpy(&bytes[at + name.size() + 4], window.data(), sizeof window);
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST(ExrFile, PicturesAreAsLargeAsTheirDisplayWindow) {
+  const TemporaryFolder folder;
+  Image part = make_image(3, 2, {"R"});
+  part.pixels = {1, 2, 3, 4, 5, 6};
+  const auto path = folder / "part.exr";
+  save_image(part, path, PixelType::kFloat);
+  set_display_window(path, {-1, 1, 3, 3});
+  const Image whole = load_image(path).image;
+  EXPECT_EQ(renderer::load_image_header(path).image.width, 5);
+  ASSERT_EQ(whole.width, 5);
+  ASSERT_EQ(whole.height, 3);
+  EXPECT_EQ(whole.pixels, (std::vector<float>{0, 4, 5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  set_display_window(path, {7, 7, 8, 7});
+  EXPECT_EQ(load_image(path).image.pixels, (std::vector<float>{0, 0}));
+  set_display_window(path, {0, 0, 99999, 99999});
+  EXPECT_NE(error_of([&] { load_image(path); }).find("displayWindow: 100000 x 100000 pixels around"), std::string::npos)
+      << error_of([&] { load_image(path); });
 }
 
 TEST(ExrFile, TheHeaderAloneHasNoPixels) {
@@ -254,6 +285,27 @@ std::string from_base64(std::string_view text) {
     bytes += char(bits >> count & 0xFF);
   }
   return bytes;
+}
+
+// 4 x 2 texels: 200, 100, 50 at alpha 128 above, 10, 20, 30 at alpha 0 below; base64, as OpenImageIO's writer
+// multiplies by alpha.
+constexpr std::string_view kWebp = "UklGRiIAAABXRUJQVlA4TBYAAAAvA0AAEA9wCqgr+J7CYwCDFvMQ0f8I";
+
+TEST(DecodeTexture, WebpIsAsStoredWhateverItsAlpha) {
+  const std::string bytes = from_base64(kWebp);
+  const std::vector<std::uint8_t> above{200, 100, 50, 128}, below{10, 20, 30, 0};
+  const renderer::Texture texture = renderer::decode_texture(bytes, "t");
+  ASSERT_EQ(texture.rgba.size(), 32U);
+  for (std::size_t i = 0; i < 32; ++i) EXPECT_EQ(texture.rgba[i], i < 16 ? above[i % 4] : below[i % 4]) << i;
+  const TemporaryFolder folder;
+  const Image image = load_image(folder.write("t.webp", bytes)).image;
+  ASSERT_EQ(image.channel_count(), 4);
+  for (std::size_t i = 0; i < 32; ++i) EXPECT_NEAR(image.pixels[i] * 255, i < 16 ? above[i % 4] : below[i % 4], 1e-3);
+  for (std::size_t size = 0; size < bytes.size() - 2; ++size) {
+    EXPECT_NE(error_of([&] { renderer::decode_texture(bytes.substr(0, size), "images[7]"); }).find("images[7]"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { load_image(folder.write("cut.webp", bytes.substr(0, size))); }), "");
+  }
 }
 
 TEST(DecodeTexture, AvifIsReadFromMemoryAndTruncatedOnesAreRefused) {

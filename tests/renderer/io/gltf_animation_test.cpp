@@ -51,6 +51,17 @@ Vec3f position(const GltfBuilder& gltf, std::optional<double> seconds, const std
   return placed(gltf, seconds, animation).column(3);
 }
 
+TEST(Animation, WhatMovesNoNodeIsSaid) {
+  GltfBuilder gltf = triangle_scene();
+  add_animation(gltf, {{{0, 1}, {0, 0, 0, 1, 1, 1}, "translation"}});
+  gltf.root["animations"][0]["channels"][0]["target"] = {
+      {"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/0/translation"}}}}}};
+  const LoadedScene loaded = load(gltf, 0.5);
+  ASSERT_EQ(loaded.warnings.size(), 1U);
+  EXPECT_EQ(loaded.warnings[0], "animations[0].channels[0]: \"pointer\" is not animated here");
+  EXPECT_TRUE(load(gltf, std::nullopt).warnings.empty());
+}
+
 TEST(Animation, WithoutATimeNodesStandAsTheFileHasThem) {
   GltfBuilder gltf = triangle_scene();
   gltf.root["nodes"][0]["translation"] = {7, 8, 9};

@@ -199,15 +199,19 @@ TEST(GltfNodes, ParentsApplyAfterChildrenAndMayMirror) {
   EXPECT_LT(determinant3(loaded.scene.instances[0].world_from_object), 0);
 }
 
-TEST(GltfNodes, OnlyTheDefaultSceneIsShown) {
+TEST(GltfNodes, OnlyOneSceneIsShown) {
   GltfBuilder gltf = triangle_scene();
   gltf.add_node({{"mesh", 0}, {"name", "shown"}});
   gltf.root["scenes"] = ordered_json::array({{{"nodes", {0}}}, {{"nodes", {1}}}});
-  EXPECT_EQ(load(gltf).scene.instances.size(), 2U) << "without a default scene every root node is";
+  gltf.root.erase("scene");
+  EXPECT_EQ(load(gltf).scene.instances.size(), 1U) << "the first, where none is named";
   gltf.root["scene"] = 1;
   const LoadedScene loaded = load(gltf);
   ASSERT_EQ(loaded.scene.instances.size(), 1U);
   EXPECT_EQ(loaded.scene.instances[0].name, "shown");
+  gltf.root.erase("scene");
+  gltf.root.erase("scenes");
+  EXPECT_EQ(load(gltf).scene.instances.size(), 2U) << "all nodes, where there are no scenes";
 }
 
 TEST(GltfNodes, CopiesWithoutVolumeAreLeftOut) {

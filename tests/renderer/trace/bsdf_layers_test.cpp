@@ -128,6 +128,29 @@ TEST(BsdfLayers, NothingSendsBackMoreThanItGets) {
   }
 }
 
+// A coat has a normal of its own, whatever normal map is below it.
+TEST(BsdfLayers, AClearcoatIsWhatItIsOverAnyNormalMap) {
+  const Vec3f viewer = normalize(Vec3f{1, 0, 0.27F});
+  SurfacePoint point = layered_point({0, 0, 0}, 0, 1);
+  point.layers->specular = 0;
+  point.layers->clearcoat = 1;
+  point.layers->clearcoat_roughness = 0.2F;
+  const double flat = sampled(Bsdf(point), viewer, 1 << 14).albedo;
+  EXPECT_GT(flat, 0.1);
+  for (const float tilt : {0.15F, 0.3F, 0.6F}) {
+    point.shading_normal = {std::sin(tilt), 0, std::cos(tilt)};
+    const Bsdf bsdf(point);
+    EXPECT_NEAR(sampled(bsdf, viewer, 1 << 14).albedo / flat, 1, 0.02) << tilt;
+    double whole = 0;
+    for (int i = 0; i < 1 << 16; ++i) {
+      const Vec2f u = Sampler(5, 0, std::uint32_t(i)).next_2d();
+      const Vec3f d = sample_cosine_hemisphere(u);
+      if (d.z > 1e-4F) whole += double(bsdf.eval(viewer, d).y) / (double(d.z) / M_PI) / (1 << 16);
+    }
+    EXPECT_NEAR(whole / flat, 1, 0.04) << tilt;
+  }
+}
+
 TEST(BsdfLayers, WhiteSheetsLoseNothing) {
   for (const float roughness : {0.0F, 0.1F, 0.2F, 0.5F, 1.0F}) {
     SurfacePoint point = layered_point({1, 1, 1}, 0, roughness);

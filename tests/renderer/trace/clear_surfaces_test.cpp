@@ -163,6 +163,72 @@ TEST(ClearSurfaces, AnAbsorbingBallIsAsDarkAsItsDiameterMakesIt) {
   EXPECT_NEAR(frame_mean(scene, {0, 0, 4}, 256), reflected + passed, 0.01);
 }
 
+// What absorbs is the way inside, on whichever side of the frosted boundary a light is.
+TEST(ClearSurfaces, FrostedSolidsAbsorbInsideAlone) {
+  const float a = 0.7F, r = 0.01F;
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, r, 48), glass(true, 0.5F), "ball");
+  const Lights lights[] = {{PointLight{"", {0, 0, -3}, {90, 90, 90}}},
+                           {DirectionalLight{"", {0, 0, 1}, {9, 9, 9}}},
+                           {PointLight{"", {0, 0, 3}, {90, 90, 90}}}};
+  for (const Lights& light : lights) {
+    scene.materials[0].layers->absorption = {};
+    const double without = frame_mean(scene, {0, 0, 0.3F}, 64, light);
+    scene.materials[0].layers->absorption = {a, 0, 0};
+    EXPECT_GT(without, 1e-3);
+    const double ratio = frame_mean(scene, {0, 0, 0.3F}, 64, light) / without;
+    EXPECT_LT(ratio, 1);
+    EXPECT_GT(ratio, std::exp(-6 * a * r)) << "reflected within a few times at most";
+  }
+}
+
+TEST(ClearSurfaces, FrostedSolidsAbsorbWhatALampInsideThemSends) {
+  const float a = 3.5F, way = 0.9F;
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, 1, 48), glass(true, 0.6F), "ball");
+  add_mesh(scene, test::sphere({0, 0, 0}, 1 - way, 24), test::lambert({0, 0, 0}, {9, 9, 9}), "lamp");
+  const double without = frame_mean(scene, {0, 0, 5}, 256);
+  scene.materials[0].layers->absorption = {a, 0, 0};
+  const double ratio = frame_mean(scene, {0, 0, 5}, 256) / without;
+  EXPECT_LT(ratio, std::exp(-a * way) * 1.01);
+  EXPECT_GT(ratio, std::exp(-a * way) * 0.8);
+}
+
+// A camera, a receiver and a lamp inside.
+TEST(ClearSurfaces, WhatIsInsideASolidIsSeenThroughIt) {
+  const float a = 0.7F;
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, 1, 96), glass(true, 0, {a, 0, 0}), "ball");
+  scene.materials[0].layers->ior = 1;
+  add_mesh(scene, test::sphere({0, 0, 0}, 9, 24, true), test::lambert({0, 0, 0}, {1, 1, 1}), "sky");
+  EXPECT_NEAR(frame_mean(scene, {0, 0, 0}, 16), std::exp(-a), 2e-3);
+  EXPECT_NEAR(frame_mean(scene, {0, 0, 0.5F}, 16), std::exp(-1.5F * a), 2e-3);
+  add_mesh(scene, test::sphere({0, 0, -0.5F}, 0.2F, 48), test::lambert({0, 0, 0}, {2, 2, 2}), "lamp");
+  EXPECT_NEAR(frame_mean(scene, {0, 0, 0}, 16), 2 * std::exp(-0.3F * a), 2e-3);
+
+  Scene lake;
+  add_mesh(lake, block(0.5F), glass(true, 0, {2, 0, 0}), "block");
+  const RayTracer tracer(lake);
+  const SurfaceSample ground{{0, 1.1F, 0}, {0, 1, 0}};
+  const Lights lamp{PointLight{"", {0, 1.4F, 0}, {1, 1, 1}}};
+  const Vec3f light = trace_illumination(tracer, {&ground, 1}, lamp, {.samples = 4, .bounces = 0, .seed = 4}).value[0];
+  EXPECT_NEAR(light.x / light.y, std::exp(-0.3 * 2), 1e-4);
+}
+
+TEST(ClearSurfaces, MediaAreToldByWhatRaysLeave) {
+  Scene scene;
+  add_mesh(scene, test::sphere({0, 0, 0}, 2, 24), glass(true, 0, {1, 1, 1}), "outer");
+  add_mesh(scene, test::sphere({0, 0, 0}, 1, 24), glass(true, 0, {2, 2, 2}), "inner");
+  add_mesh(scene, rectangle({-5, -9, -5}, {0, 0, 10}, {10, 0, 0}), glass(true, 0, {3, 3, 3}), "lake");
+  const RayTracer tracer(scene);
+  const auto absorption = [&](Vec3f at) { return -std::log(Media::at(tracer, at).transmittance(1).x); };
+  EXPECT_NEAR(absorption({0, 0, 0}), 2, 1e-5);
+  EXPECT_NEAR(absorption({0, 1.5F, 0}), 1, 1e-5);
+  EXPECT_TRUE(Media::at(tracer, {0, 3, 0}).empty());
+  EXPECT_NEAR(absorption({0, -9.5F, 0}), 3, 1e-5) << "below an open surface";
+  EXPECT_TRUE(Media::at(tracer, {0, -8.5F, 0}).empty());
+}
+
 // Lights are chosen from, where there are many, on both sides of what lets light through.
 TEST(ClearSurfaces, ManyLampsBehindFrostedGlassShineAsOneDoes) {
   Scene scene;

@@ -120,7 +120,7 @@ TEST(PathTracer, HighlightsAreAsNarrowAsThePolishUnlessAskedToBeWide) {
     PathLight light;
     Sampler sampler(1, 0, 0);
     PathTracer(tracer, lights, {.bounces = 0, .wide_highlights = wide})
-        .add_scattered(point, -ray.direction, 0, {1, 1, 1}, sampler, light);
+        .add_scattered(point, {}, -ray.direction, 0, {1, 1, 1}, sampler, light);
     const LightSource source = wide ? LightSource::kPunctualWidened : LightSource::kPunctual;
     const float expected = Bsdf(point).eval(-ray.direction, to_light, source).x * irradiance;
     EXPECT_NEAR(light.direct.x, expected, 1e-4F * expected) << wide;
@@ -141,7 +141,7 @@ TEST(PathTracer, LightIsTakenApartByItsSource) {
   light.per_light.assign(3, Vec3f{});
   for (std::uint32_t k = 0; k < 2000; ++k) {
     Sampler sampler(8, 0, k);
-    paths.add_illumination({2, 1e-5F, 3}, {0, 1, 0}, true, sampler, light);
+    paths.add_illumination({{2, 1e-5F, 3}, {0, 1, 0}}, true, sampler, light);
   }
   const Vec3f sum = light.per_light[0] + light.per_light[1] + light.per_light[2], all = light.direct + light.indirect;
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], all[c], 1e-4F * all[c]);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+namespace chiaro::renderer {
+
+// Of the samples that an encoded image holds.
+struct SamplesHeader {
+  int width = 0, height = 0;
+  int channels = 0;          // grey, grey and alpha, RGB or RGBA; palettes are looked up
+  int bytes_per_sample = 1;  // or 2, in the order of this machine
+
+  std::uintmax_t bytes() const { return std::uintmax_t(width) * height * channels * bytes_per_sample; }
+};
+
+}  // namespace chiaro::renderer
