@@ -75,7 +75,7 @@ void refuse_options_of_frames(const CompareCommand& options) {
 
 int compare_two_targets(const CompareCommand& options, Session& session) {
   refuse_options_of_frames(options);
-  const inverse::Target a = inverse::load_target(options.a);
+  const inverse::Target a = inverse::load_illumination(options.a);
   const inverse::Target b = inverse::load_target(options.b);
   session.stop_if_interrupted();
   const inverse::TargetComparison comparison = naming_file(options.a, [&] { return inverse::compare_targets(a, b); });

@@ -40,7 +40,7 @@ inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& s
   if (strokes.base == inverse::StrokeBase::kBlack)
     return black_target(choose_receivers(*stage.tracer, options.surface));
   const renderer::Lights lights = choose_lights(stage, "", options.transport.environment, session);
-  require_light(stage, lights);
+  require_light(stage, lights, "lights in the scene, or strokes whose base is black");
   return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), lights,
                       trace_options(options.transport, options.common), session.control())
       .target;

@@ -102,7 +102,7 @@ CommandRun add_render(CLI::App& command) {
   add_number(command, {"--time", "SECONDS", "Render for so long; --samples is then the most"},
              options->frame.time_limit, kPositive);
   add_flag(command, "--preview", options->preview, "Write F.png beside the frame, through OpenColorIO");
-  add_frame_options(command, options->frame);
+  add_frame_options(command, options->frame, "--samples");
   add_hide_backs(command, options->transport.materials);
   add_transport_options(command, options->transport, "Paths per pixel");
   add_common_options(command, options->common);

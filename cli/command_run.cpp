@@ -160,10 +160,10 @@ std::string text_of_wanted(const TargetChoices& choices) {
   return fmt::format("The lights that bring it closest to {}", fmt::join(sources, ", "));
 }
 
-void make_folders(const RunCommand& options) {
-  make_folder(options.folder());
-  make_folder(options.folder() / "frames");
-  make_folder(options.folder() / "pictures");
+void make_folders(const RunCommand& options, NewFolders& folders) {
+  folders.make(options.folder());
+  folders.make(options.folder() / "frames");
+  folders.make(options.folder() / "pictures");
 }
 
 // A target file that is wanted as it is may well be that of an earlier run.
@@ -198,7 +198,8 @@ int run_run(RunCommand options) {
   const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
   const inverse::Target& target = wanted.target;
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
-  make_folders(options);
+  NewFolders folders;
+  make_folders(options, folders);
   JsonObject summary = wanted.pictures;
   if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   if (problem.lights_in_place.empty()) {
@@ -243,7 +244,7 @@ CommandRun add_run(CLI::App& command) {
   add_solve_options(command, options->choices);
   add_count(command, {"--frame-samples", "N", fmt::format("Paths per pixel (default {})", options->frame_samples)},
             options->frame_samples, {1, 1 << 24});
-  add_frame_options(command, options->frame);
+  add_frame_options(command, options->frame, "--frame-samples");
   add_hide_backs(command, options->choices.transport.materials);
   add_common_options(command, options->common);
   set_examples(command, "  chiaro run room.glb --target painted.glb -o room_lit --max-lights 5 --width 1280");

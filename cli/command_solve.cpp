@@ -24,9 +24,9 @@ struct SolveCommand {
 };
 
 // The report's folder is made after the inputs are found to be good.
-inverse::SolveOptions with_report(inverse::SolveOptions options, const std::string& folder) {
+inverse::SolveOptions with_report(inverse::SolveOptions options, const std::string& folder, NewFolders& folders) {
   if (folder.empty()) return options;
-  make_folder(folder);
+  folders.make(folder);
   options.report_folder = folder;
   return options;
 }
@@ -74,7 +74,8 @@ int run_solve(SolveCommand options) {
   session.stop_if_interrupted();
   inverse::SolveProblem problem = solve_problem(stage, wanted.target, options.choices, options.common, session);
   use_cache(options, problem);
-  inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report);
+  NewFolders folders;
+  inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report, folders);
   if (!options.from.empty()) {
     solving.earlier = inverse::load_error_curve(options.from);
     solving.earlier_file = options.from;

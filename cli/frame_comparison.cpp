@@ -1,5 +1,6 @@
 #include "cli/frame_comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,14 +19,23 @@ bool finite_pixel(const Image& image, std::size_t i) {
   return std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
 }
 
-// Pixels that are not finite in both frames have no FLIP.
-Image without_bad_pixels(Image flip, const ComparedFrames& frames) {
-  for (std::size_t i = 0; i < flip.pixels.size(); ++i) {
+// Without pixels that are not finite in both frames: of `image` they become `value`.
+Image without_bad_pixels(Image image, const ComparedFrames& frames, float value) {
+  const std::size_t channels = image.channel_names.size();
+  for (std::size_t i = 0; i * channels < image.pixels.size(); ++i) {
     if (finite_pixel(frames.a, i) && finite_pixel(frames.b, i)) continue;
-    flip.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+    std::fill_n(image.pixels.begin() + std::ptrdiff_t(i * channels), channels, value);
   }
-  return flip;
+  return image;
 }
+
+// They have no FLIP …
+Image left_out(Image flip, const ComparedFrames& frames) {
+  return without_bad_pixels(std::move(flip), frames, std::numeric_limits<float>::quiet_NaN());
+}
+
+// … nor a part in that of their neighbours.
+Image same_where_bad(const Image& image, const ComparedFrames& frames) { return without_bad_pixels(image, frames, 0); }
 
 FrameFigures figures_of(const ComparedFrames& frames, const FrameComparison& found,
                         const std::optional<renderer::PixelRegion>& region) {
@@ -45,10 +55,13 @@ renderer::ComparisonPanels panels_of(const ComparedFrames& frames, const ViewCho
 
 void add_flip(const ComparedFrames& frames, double pixels_per_degree, const renderer::Control& control,
               FrameComparison& found) {
-  found.panels.flip = without_bad_pixels(renderer::flip(found.panels.a, found.panels.b, pixels_per_degree), frames);
+  const renderer::ComparisonPanels& shown = found.panels;
+  found.panels.flip = left_out(
+      renderer::flip(same_where_bad(shown.a, frames), same_where_bad(shown.b, frames), pixels_per_degree), frames);
   if (!frames.scene_linear) return;
-  found.hdr_flip = renderer::hdr_flip(frames.a, frames.b, pixels_per_degree, control);
-  found.hdr_flip.error = without_bad_pixels(std::move(found.hdr_flip.error), frames);
+  found.hdr_flip = renderer::hdr_flip(same_where_bad(frames.a, frames), same_where_bad(frames.b, frames),
+                                      pixels_per_degree, control);
+  found.hdr_flip.error = left_out(std::move(found.hdr_flip.error), frames);
 }
 
 }  // namespace

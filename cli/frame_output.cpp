@@ -82,7 +82,7 @@ void add_attributes(renderer::Attributes& attributes, const renderer::Frame& fra
 
 }  // namespace
 
-void add_frame_options(CLI::App& command, FrameOptions& options) {
+void add_frame_options(CLI::App& command, FrameOptions& options, const std::string& samples) {
   add_count(command, {"--width", "W", "Pixels across (default 960)"}, options.size.width, kSideRange);
   add_count(command, {"--height", "H", "Pixels down (default: from the camera's aspect ratio)"}, options.size.height,
             kSideRange);
@@ -94,7 +94,7 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
              [&options](const std::string& text) { options.box_filter = parse_filter(text); });
   add_number(command,
              {"--noise-threshold", "E",
-              "Sample until every 8 x 8 pixels' standard error is E of their mean; --samples is then the most"},
+              "Sample until every 8 x 8 pixels' standard error is E of their mean; " + samples + " is then the most"},
              options.noise_threshold, kPositive);
   add_number(command, {"--clamp-direct", "L", "Most cd/m² of a sample's direct light, which biases (default: none)"},
              options.clamp_direct, kPositive);

@@ -36,7 +36,8 @@ struct FrameRun {
   const renderer::Control& control;
 };
 
-void add_frame_options(CLI::App& command, FrameOptions& options);
+// samples: the name of the option that says how many there are.
+void add_frame_options(CLI::App& command, FrameOptions& options, const std::string& samples);
 
 // Error where the colour spaces, displays or views asked for do not exist. UsageError where two options expose the
 // preview.

@@ -147,9 +147,21 @@ void require_not_a_file(const std::filesystem::path& folder) {
   throw Error({folder.string(), "", "is a file", "the name of a folder"});
 }
 
-void make_folder(const std::filesystem::path& folder) {
+NewFolders::~NewFolders() {
+  std::error_code ignored;
+  for (auto made = made_.rbegin(); made != made_.rend(); ++made) {
+    if (std::filesystem::is_empty(*made, ignored)) std::filesystem::remove(*made, ignored);
+  }
+}
+
+void NewFolders::make(const std::filesystem::path& folder) {
   require_not_a_file(folder);
   std::error_code failed;
+  std::vector<std::filesystem::path> missing;
+  for (auto at = folder; !at.empty() && !std::filesystem::exists(at, failed); at = at.parent_path()) {
+    missing.push_back(at);
+  }
+  made_.insert(made_.end(), missing.rbegin(), missing.rend());
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error({folder.string(), "", fmt::format("cannot be made: {}", failed.message()), "a folder"});
   require_writable(folder / "contents");

@@ -21,8 +21,19 @@ void require_apart(const std::vector<std::filesystem::path>& inputs, const std::
 // Error where `folder` exists and is something else than a folder.
 void require_not_a_file(const std::filesystem::path& folder);
 
-// Makes the folder where it is missing; Error where it cannot be made, is a file, or takes no files.
-void make_folder(const std::filesystem::path& folder);
+// Folders made for the outputs of a command. Those that are empty when it ends go again: it wrote nothing.
+class NewFolders {
+ public:
+  NewFolders() = default;
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  ~NewFolders();
+  // And those that it is in, where they are missing; Error where it cannot be made, is a file, or takes no files.
+  void make(const std::filesystem::path& folder);
+
+ private:
+  std::vector<std::filesystem::path> made_;  // outer ones first
+};
 
 // `path` with another extension, beside it.
 std::filesystem::path beside(const std::filesystem::path& path, const std::string& extension);

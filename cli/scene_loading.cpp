@@ -52,10 +52,9 @@ bool has_emission(const renderer::Scene& scene) {
       scene, [](const renderer::Material& material) { return renderer::max_component(material.emission) > 0; });
 }
 
-void require_light(const LoadedStage& stage, const renderer::Lights& lights) {
+void require_light(const LoadedStage& stage, const renderer::Lights& lights, const std::string& expected) {
   if (!lights.empty() || has_emission(*stage.scene)) return;
-  throw renderer::Error({stage.scene->path, "", "no light: the scene has no lights and nothing in it emits",
-                         "lights in the scene, or a light file given with --lights"});
+  throw renderer::Error({stage.scene->path, "", "no light: the scene has no lights and nothing in it emits", expected});
 }
 
 }  // namespace chiaro::cli

@@ -36,6 +36,6 @@ renderer::Lights environment_of(const LoadedStage& stage, const EnvironmentOptio
 bool has_emission(const renderer::Scene& scene);
 
 // Error ("no light") where there are no lights and nothing emits.
-void require_light(const LoadedStage& stage, const renderer::Lights& lights);
+void require_light(const LoadedStage& stage, const renderer::Lights& lights, const std::string& expected);
 
 }  // namespace chiaro::cli

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cli/add_options.h"
+#include "cli/usage_error.h"
 
 namespace chiaro::cli {
 namespace {
@@ -19,7 +20,10 @@ void parse_exposure(const std::string& text, ViewChoice& choice) {
 
 void add_view_options(CLI::App& command, ViewChoice& choice) {
   naming_inputs(add_parsed(command, {"--ocio", "CONFIG", "OpenColorIO config (default: $OCIO, or the one installed)"},
-                           [&choice](const std::string& text) { choice.config = text; }));
+                           [&choice](const std::string& text) {
+                             if (text.empty()) throw UsageError("is empty (expected an OpenColorIO config)");
+                             choice.config = text;
+                           }));
   add_text(command, {"--display", "NAME", "Display of the config (default: its first)"}, choice.view.display);
   add_text(command, {"--view", "NAME", "View of the display (default: its first)"}, choice.view.view);
   add_text(command, {"--look", "NAME", "Look in place of the view's own, or none"}, choice.view.look);

@@ -126,6 +126,18 @@ bool at_border(const SolveProblem& problem, const SolveResult& result) {
   return false;
 }
 
+constexpr const char* kWithoutConstraints = "without the constraints lights may come closer";
+
+// As bright as they may be.
+bool any_at_limit(const SolveProblem& problem, const SolveResult& result) {
+  constexpr float kAtLimit = 0.99F;
+  return std::any_of(result.lights.begin(), result.lights.end(), [&](const FoundLight& found) {
+    const auto* light = std::get_if<renderer::PointLight>(&found.light);
+    return light != nullptr &&
+           double(max_component(light->intensity)) >= double(kAtLimit) * problem.intensities.max_intensity;
+  });
+}
+
 }  // namespace
 
 std::vector<NotReached> places_not_reached(const Target& target, const std::vector<Vec3f>& illumination, double noise) {
@@ -146,17 +158,22 @@ std::vector<NotReached> places_not_reached(const Target& target, const std::vect
 
 std::string advice_for(const SolveProblem& problem, const SolveOptions& options, const SolveResult& result) {
   if (result.not_reached.empty()) return {};
-  if (!problem.lights_in_place.empty()) return "lights that may move would come closer";
+  const bool ruled = problem.intensities.any();
+  if (!problem.lights_in_place.empty()) {
+    return ruled ? kWithoutConstraints : "lights that may move would come closer";
+  }
   if (result.termination == kTimeLimit)
     return "more time may bring the lights closer: the time limit ended their search";
   const int most = most_lights(options);
   if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
     return fmt::format("more lights may come closer: {} {} allowed", most, most == 1 ? "was" : "were");
   }
+  if (options.method == SolveMethod::kThesis) return "the joint method, or another threshold, may come closer";
+  if (any_at_limit(problem, result)) return kWithoutConstraints;
   if (at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";
-  if (problem.intensities.any() || !problem.places.mounts.empty() || problem.places.surface_distance > 0 ||
+  if (ruled || !problem.places.mounts.empty() || problem.places.surface_distance > 0 ||
       problem.places.light_distance > 0) {
-    return "without the constraints lights may come closer";
+    return kWithoutConstraints;
   }
   return "no more lights from anywhere in the region explain it: paint it otherwise, or give it less weight";
 }

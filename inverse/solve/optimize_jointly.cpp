@@ -267,8 +267,9 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   std::size_t held = found.beside_surfaces.size();
   LightEstimates lights =
       options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
-  const char* const termination = found.out_of_time          ? kTimeLimit
-                                  : options.exact_lights > 0 ? "as many lights as asked for"
+  const char* const termination = found.out_of_time                                                ? kTimeLimit
+                                  : options.exact_lights > 0                                       ? kAsManyAsAskedFor
+                                  : !explained && lights.size() == std::size_t(options.max_lights) ? kAsManyAsAllowed
                                   : another_explains_more(error_curve, lights.size())
                                       ? "further lights explain little more"
                                       : "no further light explains more";

@@ -69,11 +69,12 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   const SimplexOptimum optimum =
       optimize_simplex(response, observations, cut.lights, [&] { return clock.out_of_time(); });
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
-  const bool reached = cut.error <= cut_options.error_threshold || options.exact_lights > 0;
   return {optimum.lights, cut.lights,
-          clock.out_of_time() ? kTimeLimit
-          : reached           ? "error threshold of the lightcut met"
-                              : "every cluster is a light",
+          clock.out_of_time()                            ? kTimeLimit
+          : options.exact_lights > 0                     ? kAsManyAsAskedFor
+          : cut.error <= cut_options.error_threshold     ? "error threshold of the lightcut met"
+          : int(cut.lights.size()) == options.max_lights ? kAsManyAsAllowed
+                                                         : "every cluster is a light",
           cut.nodes};
 }
 

@@ -65,10 +65,7 @@ void append_standard_error(Target& target, const VertexMeshPart& part, const std
   }
 }
 
-void check_not_empty(const Target& target, const VertexMesh& mesh, const std::string& file) {
-  if (std::none_of(mesh.parts.begin(), mesh.parts.end(), has_values)) {
-    throw Error({file, "", "an empty target: no primitive has illumination", "vertices with _ILLUMINATION or COLOR_0"});
-  }
+void check_not_black(const Target& target, const std::string& file) {
   const auto& weight = target.weight;
   if (std::all_of(weight.begin(), weight.end(), [](float w) { return w == 0; })) {
     throw Error({file, "", "an empty target: every _WEIGHT is 0", "a weight > 0 somewhere"});
@@ -106,12 +103,20 @@ std::vector<T> slice(const std::vector<T>& values, std::size_t first, std::size_
 }  // namespace
 
 Target load_target(const std::filesystem::path& path, float target_scale) {
+  Target target = load_illumination(path, target_scale);
+  check_not_black(target, path.string());
+  return target;
+}
+
+Target load_illumination(const std::filesystem::path& path, float target_scale) {
   check_scale(target_scale);
   const std::string file = path.string();
   const VertexMesh mesh = renderer::load_vertex_mesh(path);
   Target target;
   for (const VertexMeshPart& part : mesh.parts) append_part(target, part, target_scale, file);
-  check_not_empty(target, mesh, file);
+  if (std::none_of(mesh.parts.begin(), mesh.parts.end(), has_values)) {
+    throw Error({file, "", "an empty target: no primitive has illumination", "vertices with _ILLUMINATION or COLOR_0"});
+  }
   if (all_know_their_error(mesh)) {
     for (const VertexMeshPart& part : mesh.parts) append_standard_error(target, part, file);
   }

@@ -18,6 +18,8 @@ struct Target {
 // `.glb`/`.gltf` with _ILLUMINATION, or COLOR_0 × target_scale (cd/m²) where that is absent. Error where a file has
 // neither ("an empty target"), or where every value or every weight is zero.
 Target load_target(const std::filesystem::path& path, float target_scale = 1);
+// The same, which may be of zeros alone.
+Target load_illumination(const std::filesystem::path& path, float target_scale = 1);
 // Error, naming the vertex, for illumination that load_target would refuse.
 void save_target(const Target& target, const std::filesystem::path& path);
 

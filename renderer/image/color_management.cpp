@@ -243,6 +243,9 @@ ocio::ConstCPUProcessorRcPtr inverse_view_processor(const ocio::ConstConfigRcPtr
   throw Error({path.string(), "", view + " has no inverse", "a view that can be undone, or a colour space"});
 }
 
+// Beyond it the matrices and curves of a view may overflow, and what is brightest would be shown as black.
+constexpr float kWhiteInAnyView = 1e15F;
+
 float display_value(float value) { return std::isnan(value) ? 0 : std::clamp(value, 0.0F, 1.0F); }
 
 std::optional<std::filesystem::path> data_config() {
@@ -280,7 +283,7 @@ Image apply_display_view(const Image& image, const std::filesystem::path& config
   const ocio::ConstConfigRcPtr loaded = load_config(config);
   const auto processor = cpu_processor(loaded, view_transform(loaded, config, options), config);
   const float gain = std::exp2(options.exposure);
-  for (float& value : shown.pixels) value *= gain;
+  for (float& value : shown.pixels) value = std::clamp(value * gain, -kWhiteInAnyView, kWhiteInAnyView);
   apply(*processor, shown.pixels);
   std::transform(shown.pixels.begin(), shown.pixels.end(), shown.pixels.begin(), display_value);
   return shown;

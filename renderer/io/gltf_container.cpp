@@ -101,6 +101,8 @@ std::string_view without_blanks(std::string_view text) {
 
 }  // namespace
 
+bool writes_gltf_text(const std::filesystem::path& path) { return path.extension() == ".gltf"; }
+
 bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
 
 GltfContainer read_gltf_container(const std::filesystem::path& path) {

@@ -25,6 +25,9 @@ std::string read_gltf_json(const std::filesystem::path& path);
 
 bool is_glb(std::string_view bytes);
 
+// Whether a file of this name is written as text.
+bool writes_gltf_text(const std::filesystem::path& path);
+
 // The bytes of a GLB. Error, naming `path`, for more than GLB's 4 GiB.
 std::string make_glb(const GltfContainer& container, const std::filesystem::path& path);
 

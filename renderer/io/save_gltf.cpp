@@ -141,8 +141,6 @@ void add_lights(ordered_json& root, const Lights& lights) {
   use_extension(root);
 }
 
-bool writes_text(const std::filesystem::path& path) { return path.extension() == ".gltf"; }
-
 }  // namespace
 
 void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights& lights,
@@ -152,7 +150,7 @@ void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights
   ordered_json root = ordered_json::parse(container.json);
   if (!options.keep_lights) remove_lights(root);
   add_lights(root, lights);
-  GltfEmbedding embedding{{scene_path, options.external}, writes_text(path)};
+  GltfEmbedding embedding{{scene_path, options.external}, writes_gltf_text(path)};
   container.json =
       embed(root.dump(-1, ' ', false, ordered_json::error_handler_t::replace), container.binary, embedding);
   write_file_atomically(path, embedding.as_text ? container.json : make_glb(container, path));

@@ -8,6 +8,7 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/io/gltf_container.h"
+#include "renderer/io/gltf_embed.h"
 #include "renderer/io/vertex_mesh_file.h"
 
 namespace chiaro::renderer {
@@ -119,7 +120,8 @@ void save_vertex_mesh(const VertexMesh& mesh, const std::filesystem::path& path,
   GltfContainer container;
   container.json = document_of(builder).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   if (!builder.binary.empty()) container.binary = std::move(builder.binary);
-  write_file_atomically(path, make_glb(container, path));
+  if (!writes_gltf_text(path)) return write_file_atomically(path, make_glb(container, path));
+  write_file_atomically(path, embed(container.json, container.binary, {{path}, true}));
 }
 
 }  // namespace chiaro::renderer

@@ -79,22 +79,24 @@ Vec3f Media::transmittance(float distance) const {
 }
 
 Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& media) {
-  const float length_of_direction = length(ray.direction);
+  const Vec3f to_viewer = -normalize(ray.direction), end = ray.origin + ray.far * ray.direction;
   Media inside = media;
   Ray rest = ray;
   rest.clear = ClearSurfaces::kStop;
   Vec3f through{1, 1, 1};
   for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
     const auto hit = tracer.intersect(rest);
-    const float distance = (hit ? hit->distance : rest.far) * length_of_direction;
+    const float distance = (hit ? hit->distance : rest.far) * length(rest.direction);
     if (!hit) return distance < kInfinity ? through * inside.transmittance(distance) : through;
     const SurfacePoint point = make_surface_point(tracer.scene(), rest, *hit);
-    through *= inside.transmittance(point, distance) * Bsdf(point).clear(-ray.direction / length_of_direction);
+    through *= inside.transmittance(point, distance) * Bsdf(point).clear(to_viewer);
     if (!(max_component(through) > 0)) return {};
     inside.cross(point);
     rest.origin = point_behind(point);
-    rest.far -= hit->distance;
-    if (!(rest.far > 0)) return through;
+    if (ray.far == kInfinity) continue;
+    // To where it went, from beside its line.
+    rest.direction = end - rest.origin, rest.far = 1;
+    if (!(dot(rest.direction, ray.direction) > 0)) return through;
   }
   return {};
 }

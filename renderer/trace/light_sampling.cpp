@@ -155,6 +155,10 @@ EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, Vec3f normal, d
   s.to_light = d / s.distance;
   const float cosine = std::abs(dot(s.to_light, e.normal));
   if (!(cosine > 1e-7F)) return {};
+  // Where floats can tell that the ray has not yet met the triangle.
+  const float coordinate = max_component(max(max(abs(e.p0), abs(e.p1)), abs(e.p2)));
+  const float rounding = surface_rounding(coordinate, s.distance);
+  s.reach = s.distance - std::min(2 * rounding / cosine, 0.5F * s.distance);
   s.radiance = covered_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
   s.pdf = found->probability / e.area * d2 / cosine;
   return s;

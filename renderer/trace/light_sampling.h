@@ -65,8 +65,9 @@ class EmissiveTriangles {
   struct Sample {
     Vec3f to_light;  // unit
     float distance = 0;
-    Vec3f radiance;  // cd/m²
-    float pdf = 0;   // per steradian, at the point
+    float reach = 0;  // metres that a shadow ray goes: it does not meet the triangle itself
+    Vec3f radiance;   // cd/m²
+    float pdf = 0;    // per steradian, at the point
   };
   // At a surface of this normal, or of any where it is zero. 0 ≤ pick < 1. pdf 0: nothing arrives.
   Sample sample(Vec3f point, Vec3f normal, double pick, Vec2f u) const;

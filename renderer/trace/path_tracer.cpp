@@ -105,10 +105,8 @@ Vec3f PathTracer::light_along(const Ray& ray, const Media* media) const {
 }
 
 Vec3f PathTracer::light_through(const Vertex& v, const LightSample& from, std::uint32_t alpha_seed) const {
-  // A little short of the light, so that an emissive triangle does not hide itself.
-  constexpr float kShort = 1e-4F;
   Ray ray{v.ray_origin(from.to_light), from.to_light};
-  ray.far = from.distance == kInfinity ? kInfinity : from.distance * (1 - kShort);
+  ray.far = from.reach;
   ray.alpha_seed = alpha_seed;
   ray.clear = from.clear;
   if (!v.sees_past_triangle(from.to_light)) return light_along(ray, v.media_towards(from.to_light));
@@ -119,7 +117,7 @@ Vec3f PathTracer::light_through(const Vertex& v, const LightSample& from, std::u
   if (!(max_component(to_lifted) > 0)) return {};
   ray.origin = lifted;
   if (from.distance != kInfinity) {
-    ray.direction = v.position + from.distance * from.to_light - lifted, ray.far = 1 - kShort;
+    ray.direction = v.position + from.distance * from.to_light - lifted, ray.far = from.reach / from.distance;
   }
   return to_lifted * light_along(ray, v.media);
 }
@@ -134,7 +132,8 @@ void PathTracer::add_if_seen(const Vertex& v, std::size_t source, const LightSam
 void PathTracer::add_punctual_if_seen(const Vertex& v, std::size_t light, const PunctualSample& s, Vec3f value,
                                       Path& path) const {
   if (!(max_component(value) > 0)) return;
-  const Vec3f through = light_through(v, {s.to_light, s.distance, ClearSurfaces::kPassAll}, path.sampler.next_bits());
+  const Vec3f through = light_through(
+      v, {s.to_light, s.distance, (1 - kShortOfLight) * s.distance, ClearSurfaces::kPassAll}, path.sampler.next_bits());
   selection_.record(light, v.position, v.pick_normal(), max_component(through) > 0);
   path.light.add(v.index, light, through * value);
 }
@@ -180,7 +179,7 @@ void PathTracer::add_emissive(const Vertex& v, Vec3f throughput, Path& path) con
   if (!(s.pdf > 0)) return;
   const Vec3f value = throughput * v.eval(s.to_light) * s.radiance / s.pdf;
   const float weight = balance_heuristic(s.pdf, v.pdf(s.to_light));
-  add_if_seen(v, emission_source(), {s.to_light, s.distance, ClearSurfaces::kPassThin}, weight * value, path);
+  add_if_seen(v, emission_source(), {s.to_light, s.distance, s.reach, ClearSurfaces::kPassThin}, weight * value, path);
 }
 
 void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Path& path) const {
@@ -189,7 +188,8 @@ void PathTracer::add_environments(const Vertex& v, Vec3f throughput, Path& path)
     if (!(s.pdf > 0)) continue;
     const Vec3f value = throughput * v.eval(s.direction) * s.radiance / s.pdf;
     const float weight = balance_heuristic(s.pdf, v.pdf(s.direction));
-    add_if_seen(v, environment.source, {s.direction, kInfinity, ClearSurfaces::kPassThin}, weight * value, path);
+    add_if_seen(v, environment.source, {s.direction, kInfinity, kInfinity, ClearSurfaces::kPassThin}, weight * value,
+                path);
   }
 }
 

@@ -101,6 +101,7 @@ class PathTracer {
   struct LightSample {
     Vec3f to_light;       // unit
     float distance;       // metres
+    float reach;          // metres that a shadow ray goes, a little less
     ClearSurfaces clear;  // that it passes
   };
   // A surface that a light's ray has arrived at.

@@ -315,8 +315,7 @@ Passage RayTracer::passage(const Ray& ray) const {
 }
 
 Ray ray_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) {
-  constexpr float kShort = 1e-5F;
-  return {from, to - from, 0, 1 - kShort, alpha_seed};
+  return {from, to - from, 0, 1 - kShortOfLight, alpha_seed};
 }
 
 bool RayTracer::occluded_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed) const {

@@ -43,6 +43,9 @@ struct Hit {
   bool instanced = false;  // met in object space, and not among the world's own triangles
 };
 
+// Shadow rays end before a punctual light by so much of their length: it may stand on a surface.
+inline constexpr float kShortOfLight = 1e-5F;
+
 // A ray from `from` that ends a little short of `to`: from afar, floats cannot tell `to` from the surface that it was
 // moved off.
 Ray ray_between(Vec3f from, Vec3f to, std::uint32_t alpha_seed);

@@ -38,7 +38,9 @@ TEST(CliFrameComparison, BadPixelsHaveNoFlip) {
   frames.a.at(1, 1)[2] = std::numeric_limits<float>::quiet_NaN();
   const FrameComparison found = compare_frames(frames, {}, {});
   EXPECT_TRUE(std::isnan(*found.panels.flip->at(1, 1)));
-  EXPECT_TRUE(std::isfinite(found.whole.flip.value()));
+  EXPECT_EQ(found.whole.flip.value(), 0) << "neither of themselves nor of their neighbours";
+  frames.scene_linear = true;
+  EXPECT_EQ(compare_frames(frames, {}, {}).whole.flip_hdr.value(), 0);
 }
 
 TEST(CliFrameComparison, RegionsAreJudgedApart) {

@@ -32,14 +32,27 @@ TEST_F(CliOutputPaths, WhatCannotBeMadeIsAnError) {
   EXPECT_THROW(require_writable(folder_.path()), renderer::Error);
   folder_.write("file", "text");
   EXPECT_THROW(require_writable(folder_ / "file" / "new.exr"), renderer::Error);
-  EXPECT_THROW(make_folder(folder_ / "file"), renderer::Error);
-  EXPECT_THROW(make_folder(folder_ / "file" / "below"), renderer::Error);
+  NewFolders folders;
+  EXPECT_THROW(folders.make(folder_ / "file"), renderer::Error);
+  EXPECT_THROW(folders.make(folder_ / "file" / "below"), renderer::Error);
 }
 
-TEST_F(CliOutputPaths, FoldersAreMadeWithThoseAbove) {
-  make_folder(folder_ / "a" / "b");
-  make_folder(folder_ / "a" / "b");
-  EXPECT_TRUE(fs::is_empty(folder_ / "a" / "b"));
+TEST_F(CliOutputPaths, FoldersAreMadeWithThoseAboveAndGoAgainWhereTheyStayEmpty) {
+  fs::create_directory(folder_ / "old");
+  {
+    NewFolders folders;
+    folders.make(folder_ / "old");
+    folders.make(folder_ / "a" / "b");
+    folders.make(folder_ / "a" / "b");
+    folders.make(folder_ / "a" / "c");
+    folders.make(folder_ / "d" / "e");
+    EXPECT_TRUE(fs::is_empty(folder_ / "a" / "b"));
+    folder_.write("a/c/output", "text");
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "a" / "c" / "output"));
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "b"));
+  EXPECT_FALSE(fs::exists(folder_ / "d"));
+  EXPECT_TRUE(fs::exists(folder_ / "old")) << "it was there before";
 }
 
 TEST_F(CliOutputPaths, NamesBesideKeepTheirStem) {

@@ -71,7 +71,9 @@ TEST(NotReached, SolvesSayWhatMayHelp) {
   EXPECT_FALSE(few.not_reached.empty());
   EXPECT_NE(few.advice.find("more lights"), std::string::npos) << few.advice;
   options.max_lights = 1;
-  EXPECT_EQ(solve(problem, options).advice, "more lights may come closer: 1 was allowed");
+  const SolveResult one = solve(problem, options);
+  EXPECT_EQ(one.advice, "more lights may come closer: 1 was allowed");
+  EXPECT_EQ(one.termination, "as many lights as allowed");
   options.time_limit = 1e-9;
   EXPECT_NE(solve(problem, options).advice.find("time limit"), std::string::npos);
   options.time_limit = 0;

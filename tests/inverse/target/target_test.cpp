@@ -115,6 +115,8 @@ TEST(Target, EmptyTargetsAreErrors) {
   expect_error({{"a", {}}}, "an empty target");
   expect_error({{"a", {{"_WEIGHT", {1, 1, 1}}}}}, "an empty target");
   expect_error({{"a", {{"_ILLUMINATION", black}}}}, "an empty target");
+  const TemporaryFolder folder;
+  EXPECT_EQ(load_illumination(write_foreign_mesh(folder, {{"a", {{"_ILLUMINATION", black}}}})).illumination.size(), 3U);
   expect_error({{"a", {{"COLOR_0", black}}}}, "an empty target");
   expect_error({{"a", {{"_ILLUMINATION", kValues}, {"_WEIGHT", {0, 0, 0}}}}}, "an empty target");
   expect_error({{"a", {{"_ILLUMINATION", {0, 0, 0, 0, 0, 0, 7, 8, 9}}, {"_WEIGHT", {1, 1, 0}}}}}, "an empty target");

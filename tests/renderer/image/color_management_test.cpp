@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "tests/renderer/io/gltf_builder.h"
 
@@ -109,6 +110,16 @@ TEST(ColorManagement, ADisplayViewIsAppliedAfterExposure) {
   EXPECT_NEAR(brighter.pixels[0], 0.5F, 1e-4F);
   const Image plain = renderer::apply_display_view(image, config, {"second", "", 0});
   EXPECT_NEAR(plain.pixels[1], 0.25F, 1e-6F);
+}
+
+// Whatever the view's curves and matrices make of so much: it is white.
+TEST(ColorManagement, TheBrightestIsWhite) {
+  const std::filesystem::path config = CHIARO_SOURCE_DIR "/scenes/color/config.ocio";
+  for (const float value : {1e3F, 1e12F, 1e24F, 3e38F, std::numeric_limits<float>::infinity()}) {
+    const Image shown =
+        renderer::apply_display_view(one_pixel({"R", "G", "B"}, {value, value, value}), config, {"", "", 70});
+    for (const float channel : shown.pixels) EXPECT_GT(channel, 0.9F) << value;
+  }
 }
 
 TEST(ColorManagement, EveryPixelOfALargeImageIsConverted) {

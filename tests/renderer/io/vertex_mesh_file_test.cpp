@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "renderer/core/atomic_file.h"
 #include "tests/renderer/io/gltf_builder.h"
 
 namespace chiaro::renderer::tests {
@@ -35,18 +36,21 @@ TEST(VertexMeshFile, EverythingComesBackBitByBit) {
   VertexMesh mesh{{some_part("floor", 0.1F), some_part("wall", 2.3F)}};
   mesh.parts[1].weight.clear();
   mesh.parts[1].standard_error.clear();
-  save_vertex_mesh(mesh, folder / "mesh.glb", 100);
-  const VertexMesh loaded = load_vertex_mesh(folder / "mesh.glb");
-  ASSERT_EQ(loaded.parts.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(loaded.parts[i].name, mesh.parts[i].name);
-    EXPECT_EQ(loaded.parts[i].positions, mesh.parts[i].positions);
-    EXPECT_EQ(loaded.parts[i].normals, mesh.parts[i].normals);
-    EXPECT_EQ(loaded.parts[i].triangles, mesh.parts[i].triangles);
-    EXPECT_EQ(loaded.parts[i].illumination, mesh.parts[i].illumination);
-    EXPECT_EQ(loaded.parts[i].weight, mesh.parts[i].weight);
-    EXPECT_EQ(loaded.parts[i].standard_error, mesh.parts[i].standard_error);
+  for (const char* name : {"mesh.glb", "mesh.gltf"}) {
+    save_vertex_mesh(mesh, folder / name, 100);
+    const VertexMesh loaded = load_vertex_mesh(folder / name);
+    ASSERT_EQ(loaded.parts.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(loaded.parts[i].name, mesh.parts[i].name);
+      EXPECT_EQ(loaded.parts[i].positions, mesh.parts[i].positions);
+      EXPECT_EQ(loaded.parts[i].normals, mesh.parts[i].normals);
+      EXPECT_EQ(loaded.parts[i].triangles, mesh.parts[i].triangles);
+      EXPECT_EQ(loaded.parts[i].illumination, mesh.parts[i].illumination);
+      EXPECT_EQ(loaded.parts[i].weight, mesh.parts[i].weight);
+      EXPECT_EQ(loaded.parts[i].standard_error, mesh.parts[i].standard_error);
+    }
   }
+  EXPECT_EQ(renderer::read_file(folder / "mesh.gltf").front(), '{') << "text, as its name says";
 }
 
 TEST(VertexMeshFile, IlluminationIsShownAsClampedColour) {

@@ -84,6 +84,30 @@ TEST(EmissiveTriangles, SamplesCarryTheirOwnDensityAndRadiance) {
   EXPECT_NEAR(solid_angle.value(), 4 * M_PI, 5 * solid_angle.error());
 }
 
+// Shadow rays end before the triangle that they go to, wherever it is and however it lies.
+TEST(EmissiveTriangles, ShadowRaysDoNotMeetTheTriangleThatTheyGoTo) {
+  int rays = 0, met = 0;
+  for (std::uint32_t scene_index = 0; scene_index < 200; ++scene_index) {
+    Sampler sampler(6, 1, scene_index);
+    const float away = std::pow(10.0F, 4 * sampler.next_1d() - 1), size = std::pow(10.0F, 3 * sampler.next_1d() - 2);
+    const auto direction = [&] { return uniform_direction(sampler.next_2d()); };
+    const Vec3f corner = away * direction();
+    Scene scene;
+    add_mesh(scene, rectangle(corner, size * direction(), size * direction()), lambert({0, 0, 0}, {1, 1, 1}), "panel");
+    const RayTracer tracer(scene);
+    const EmissiveTriangles emitters(scene);
+    for (int k = 0; k < 500; ++k) {
+      const Vec3f from = corner + 10 * size * sampler.next_1d() * direction();
+      const auto s = emitters.sample(from, {}, double(sampler.next_1d()), sampler.next_2d());
+      if (!(s.pdf > 0)) continue;
+      ++rays;
+      met += tracer.occluded({from, s.to_light, 0, s.reach, 0}) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(rays, 90000);
+  EXPECT_LT(met, rays / 1000);
+}
+
 TEST(EmissiveTriangles, PicksByPowerAndSkipsTheDark) {
   // Two equal squares of luminance 1 : 3 at the same distance, and a dark one.
   Scene scene;

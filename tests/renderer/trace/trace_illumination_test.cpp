@@ -178,6 +178,23 @@ TEST(TraceIllumination, EmissivePanelMatchesItsFormFactor) {
   EXPECT_NEAR(result.value[0].z, 1 * form_factor, 6 * double(result.standard_error[0].z) + 1e-4);
 }
 
+// A lamp in a small box, far above, and a panel with a cover right below it.
+TEST(TraceIllumination, WhatIsCloseToALampHidesItFromAfar) {
+  Scene scene;
+  const float size = 0.006F, height = 50;
+  Mesh box = test::room({size, size, size});
+  for (Vec3f& p : box.positions) p = p + Vec3f{-size / 2, height - size / 2, -size / 2};
+  add_mesh(scene, box, lambert({0.5F, 0.5F, 0.5F}), "box");
+  add_mesh(scene, rectangle({99.5F, 40, -0.5F}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {3, 2, 1}), "panel");
+  add_mesh(scene, rectangle({99, 39.997F, -1}, {2, 0, 0}, {0, 0, 2}), lambert({0, 0, 0}), "cover");
+  const RayTracer tracer(scene);
+  const std::vector<SurfaceSample> points{{{0, 0, 0}, {0, 1, 0}}, {{50, 0, 0}, {0, 1, 0}}, {{100, 0, 0}, {0, 1, 0}}};
+  const Lights lamp{PointLight{"", {0, height, 0}, {1e4F, 1e4F, 1e4F}}};
+  for (const Vec3f value : trace_illumination(tracer, points, lamp, {.samples = 64, .bounces = 0, .seed = 2}).value) {
+    EXPECT_EQ(value, Vec3f{});
+  }
+}
+
 // What alpha hides of a surface gives no light either, however it is found: by rays or by light samples.
 TEST(TraceIllumination, EmissiveSurfacesShineAsFarAsAlphaHoldsThem) {
   const auto traced = [](AlphaMode mode, float alpha) {
