@@ -208,7 +208,8 @@ int run_run(RunCommand options) {
   }
   const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
-  save_found_lights(options.scene, result, options.folder() / "lights.glb", output_scene_options(options.choices));
+  save_found_lights(options.scene, result, options.folder() / "lights.glb",
+                    output_scene_options(stage, options.choices));
   const inverse::Target found = found_target(target, result);
   inverse::save_target(found, options.folder() / "found.glb");
   const inverse::TargetComparison comparison = inverse::compare_targets(found, target);

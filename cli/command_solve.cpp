@@ -82,7 +82,7 @@ int run_solve(SolveCommand options) {
   }
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   session.stop_if_interrupted();
-  save_found_lights(options.scene, result, options.output, output_scene_options(options.choices));
+  save_found_lights(options.scene, result, options.output, output_scene_options(stage, options.choices));
   print_summary(session, options, wanted, result);
   return kDone;
 }

@@ -23,6 +23,7 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
   renderer::make_mip_maps(*scene);
   stage.scene = std::move(scene);
   stage.lights = std::move(loaded.lights);
+  stage.light_nodes = std::move(loaded.light_nodes);
   stage.tracer = std::make_unique<const renderer::RayTracer>(*stage.scene);
   session.stop_if_interrupted();
   return stage;

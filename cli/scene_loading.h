@@ -16,7 +16,8 @@ namespace chiaro::cli {
 // A scene ready for light transport. The ray tracer refers to the scene, so that stays where it is.
 struct LoadedStage {
   std::unique_ptr<const renderer::Scene> scene;
-  renderer::Lights lights;  // of the scene file
+  renderer::Lights lights;       // of the scene file
+  std::vector<int> light_nodes;  // as LoadedScene's
   std::unique_ptr<const renderer::RayTracer> tracer;
 };
 

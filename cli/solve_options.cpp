@@ -132,8 +132,11 @@ void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices,
       fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path, own));
 }
 
-renderer::AddLightsOptions output_scene_options(const SolveChoices& choices) {
-  return {.keep_lights = choices.constraints.keep_lights, .external = choices.transport.load.external};
+renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const SolveChoices& choices) {
+  renderer::AddLightsOptions options{.keep_lights = choices.constraints.keep_lights,
+                                     .external = choices.transport.load.external};
+  if (choices.constraints.keep_positions) options.relit_nodes = stage.light_nodes;
+  return options;
 }
 
 void save_found_lights(const std::string& scene, const inverse::SolveResult& result, const std::string& output,

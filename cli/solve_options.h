@@ -37,7 +37,7 @@ inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOpt
 void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session);
 
 // How the scene with the lights found is made of the scene.
-renderer::AddLightsOptions output_scene_options(const SolveChoices& choices);
+renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const SolveChoices& choices);
 
 // LIGHTS.glb, the scene with the lights found, and LIGHTS.json beside it, the lights alone.
 void save_found_lights(const std::string& scene, const inverse::SolveResult& result, const std::string& output,

@@ -118,22 +118,23 @@ Camera read_camera(const GltfDocument& document, const PlacedNode& node) {
 
 }  // namespace
 
-Lights read_lights(const GltfDocument& document, const std::vector<PlacedNode>& nodes,
-                   std::vector<std::string>& warnings) {
-  Lights lights;
+NodeLights read_lights(const GltfDocument& document, const std::vector<PlacedNode>& nodes,
+                       std::vector<std::string>& warnings) {
+  NodeLights read;
   std::size_t with_range = 0;
   for (const PlacedNode& node : nodes) {
     if (node.light < 0) continue;
     check_in_world(document, node, node.world_from_node.column(3), "a light");
     with_range += document.model->lights[node.light].range > 0 ? 1 : 0;
     if (const std::optional<Light> light = read_light(document, node)) {
-      lights.push_back(*light);
+      read.lights.push_back(*light);
+      read.nodes.push_back(node.node);
     } else {
       warnings.push_back(fmt::format("{}: a light scaled to nothing is left out", place_of(node)));
     }
   }
   if (with_range > 0) warnings.push_back(fmt::format("the range of {} lights is ignored", with_range));
-  return lights;
+  return read;
 }
 
 std::vector<Camera> read_cameras(const GltfDocument& document, const std::vector<PlacedNode>& nodes) {

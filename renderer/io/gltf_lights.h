@@ -12,8 +12,12 @@ namespace chiaro::renderer {
 
 // One light per node that has one. Named as the node, or else as the light. A node's scale changes nothing but where
 // its children are; `range` is ignored, as light does not end.
-Lights read_lights(const GltfDocument& document, const std::vector<PlacedNode>& nodes,
-                   std::vector<std::string>& warnings);
+struct NodeLights {
+  Lights lights;
+  std::vector<int> nodes;  // of each
+};
+NodeLights read_lights(const GltfDocument& document, const std::vector<PlacedNode>& nodes,
+                       std::vector<std::string>& warnings);
 
 // One camera per node that has one, world_from_camera without scale.
 std::vector<Camera> read_cameras(const GltfDocument& document, const std::vector<PlacedNode>& nodes);

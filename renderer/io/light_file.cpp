@@ -175,7 +175,7 @@ Lights read_json_lights(const json& root, const std::string& file, std::vector<s
 
 Lights read_gltf_lights(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   GltfDocument document = open_gltf(path);
-  Lights lights = read_lights(document, place_nodes(document), warnings);
+  Lights lights = read_lights(document, place_nodes(document), warnings).lights;
   if (has_environment(document)) {
     load_buffers(document);
     if (auto environment = read_environment(document, warnings)) lights.push_back(*std::move(environment));

@@ -114,7 +114,9 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   if (scene.materials.empty()) scene.materials.push_back(default_material());
 
   scene.cameras = read_cameras(document, nodes);
-  loaded.lights = read_lights(document, nodes, loaded.warnings);
+  NodeLights punctual = read_lights(document, nodes, loaded.warnings);
+  loaded.lights = std::move(punctual.lights);
+  loaded.light_nodes = std::move(punctual.nodes);
   if (auto environment = read_environment(document, loaded.warnings)) loaded.lights.push_back(*std::move(environment));
   return loaded;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -141,6 +142,35 @@ void add_lights(ordered_json& root, const Lights& lights) {
   use_extension(root);
 }
 
+Vec3f intensity_of(const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light)) return point->intensity;
+  if (const auto* spot = std::get_if<SpotLight>(&light)) return spot->intensity;
+  return std::get<DirectionalLight>(light).illuminance;
+}
+
+// Definitions that several nodes share become their own.
+void relight(ordered_json& root, const std::vector<int>& nodes, const Lights& lights) {
+  CHIARO_CHECK(nodes.size() == lights.size());
+  const auto light_of = [](ordered_json& node) -> ordered_json* {
+    const bool lit = node.contains("extensions") && node["extensions"].contains(kExtension);
+    return lit ? &node["extensions"][kExtension]["light"] : nullptr;
+  };
+  std::map<std::size_t, int> uses;
+  for (ordered_json& node : root["nodes"]) {
+    if (const ordered_json* light = light_of(node)) ++uses[light->get<std::size_t>()];
+  }
+  ordered_json& definitions = root["extensions"][kExtension]["lights"];
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    ordered_json* const light = light_of(root["nodes"][std::size_t(nodes[k])]);
+    CHIARO_CHECK(light != nullptr);
+    if (uses[light->get<std::size_t>()] > 1) {
+      definitions.push_back(ordered_json(definitions[light->get<std::size_t>()]));
+      *light = definitions.size() - 1;
+    }
+    set_intensity(definitions[light->get<std::size_t>()], intensity_of(lights[k]));
+  }
+}
+
 }  // namespace
 
 void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights& lights,
@@ -148,8 +178,12 @@ void save_gltf_with_lights(const std::filesystem::path& scene_path, const Lights
   GltfContainer container = read_gltf_container(scene_path);
   check_gltf_json(container.json, scene_path);
   ordered_json root = ordered_json::parse(container.json);
-  if (!options.keep_lights) remove_lights(root);
-  add_lights(root, lights);
+  if (options.relit_nodes.empty()) {
+    if (!options.keep_lights) remove_lights(root);
+    add_lights(root, lights);
+  } else {
+    relight(root, options.relit_nodes, lights);
+  }
   GltfEmbedding embedding{{scene_path, options.external}, writes_gltf_text(path)};
   container.json =
       embed(root.dump(-1, ' ', false, ordered_json::error_handler_t::replace), container.binary, embedding);

@@ -81,6 +81,44 @@ TEST_P(SaveGltf, LightsComeBackAndNothingElseChanges) {
 
 INSTANTIATE_TEST_SUITE_P(Containers, SaveGltf, testing::Values("lit.glb", "lit.gltf"), test::kByText);
 
+// Two lamps of one definition, one below a node that moves, and a third in no scene.
+TEST(SaveGltfLights, OfNodesStayThereWithNewIntensities) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"intensity", 5}, {"color", {1, 0.5, 0}}, {"range", 9}, {"name", "bulb"}}};
+  const ordered_json bulb = {{"KHR_lights_punctual", {{"light", 0}}}};
+  const int arm = gltf.add_node({{"name", "arm"}, {"translation", {0, 2, 0}}});
+  const int left = gltf.add_node({{"name", "left"}, {"translation", {1, 0, 0}}, {"extensions", bulb}});
+  const int right = gltf.add_node({{"name", "right"}, {"translation", {-1, 0, 0}}, {"extensions", bulb}});
+  gltf.add_node({{"name", "spare"}, {"extensions", bulb}});
+  gltf.root["nodes"][std::size_t(arm)]["children"] = {left};
+  gltf.root["scenes"] = ordered_json::array({{{"nodes", {0, arm, right}}}});
+  gltf.root["scene"] = 0;
+  const auto scene = folder.write("scene.glb", gltf.glb()), lit = folder / "lit.glb";
+  const renderer::LoadedScene before = load_gltf(scene);
+  ASSERT_EQ(before.light_nodes, (std::vector<int>{left, right}));
+  Lights wanted = before.lights;
+  std::get<renderer::PointLight>(wanted[0]).intensity = {1, 2, 3};
+  std::get<renderer::PointLight>(wanted[1]).intensity = {0, 0, 0};
+  save_gltf_with_lights(scene, wanted, lit, {.relit_nodes = before.light_nodes});
+  const Lights found = load_gltf(lit).lights;
+  ASSERT_EQ(found.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto& light = std::get<renderer::PointLight>(found[k]);
+    EXPECT_EQ(light.name, k == 0 ? "left" : "right");
+    expect_near(light.position, std::get<renderer::PointLight>(before.lights[k]).position);
+    expect_near(light.intensity, std::get<renderer::PointLight>(wanted[k]).intensity);
+  }
+  const ordered_json old_root = json_of(scene), root = json_of(lit);
+  EXPECT_EQ(root["nodes"].size(), old_root["nodes"].size()) << "none is added";
+  EXPECT_EQ(root["nodes"][std::size_t(arm)], old_root["nodes"][std::size_t(arm)]);
+  const ordered_json& definitions = root["extensions"]["KHR_lights_punctual"]["lights"];
+  EXPECT_EQ(definitions[0], old_root["extensions"]["KHR_lights_punctual"]["lights"][0]) << "of the spare one";
+  for (std::size_t k = 1; k < definitions.size(); ++k) EXPECT_EQ(definitions[k]["range"], 9);
+}
+
 TEST(SaveGltfLights, OldOnesAreTakenOutUnlessKept) {
   const TemporaryFolder folder;
   const auto scene = folder.write("scene.glb", rich_scene().glb()), lit = folder / "lit.glb";
