@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <type_traits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "renderer/core/atomic_file.h"
@@ -149,6 +152,24 @@ Light read_light(const Entry& entry, const std::string& default_name, std::vecto
   fail(entry, "type", fmt::format("is \"{}\"", type.substr(0, 40)), "point, spot, directional or environment");
 }
 
+// What a light of any type may have. A solve's summary says more of each.
+constexpr std::string_view kKnownFields[] = {
+    "type",  "name",     "position",     "direction",  "intensity", "inner_cone_angle", "outer_cone_angle",
+    "image", "rotation", "contribution", "interval_90"};
+
+// Each once.
+std::set<std::string> unknown_fields(const json& lights) {
+  std::set<std::string> unknown;
+  for (const json& light : lights) {
+    for (const auto& [name, value] : light.items()) {
+      if (std::find(std::begin(kKnownFields), std::end(kKnownFields), name) == std::end(kKnownFields)) {
+        unknown.insert(name.substr(0, 40));
+      }
+    }
+  }
+  return unknown;
+}
+
 json parse(const std::string& text, const std::string& file) {
   try {
     return json::parse(text);
@@ -169,6 +190,9 @@ Lights read_json_lights(const json& root, const std::string& file, std::vector<s
     const std::size_t index = lights.size();
     const Entry entry{fields, file, fmt::format("lights[{}]", index)};
     lights.push_back(read_light(entry, fmt::format("light {}", index), warnings));
+  }
+  if (const std::set<std::string> unknown = unknown_fields(root["lights"]); !unknown.empty()) {
+    warnings.push_back(fmt::format("{}: not read of its lights: {}", file, fmt::join(unknown, ", ")));
   }
   return lights;
 }

@@ -42,6 +42,17 @@ TEST(LightFile, PointIsTheDefaultTypeAndNamesAreOptional) {
   EXPECT_EQ(name_of(lights[0]), "light 0");
 }
 
+TEST(LightFile, WhatIsNotReadIsSaid) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("lights.json", R"({"lights":[
+    {"type":"spot","position":[1,2,3],"direction":[0,-1,0],"intensity":[4,5,6],"outer_cone_angel":0.3},
+    {"position":[1,2,3],"intensity":[4,5,6],"contribution":0.5,"outer_cone_angel":0.3,"note":"x"}]})");
+  std::vector<std::string> warnings;
+  EXPECT_EQ(load_lights(path, warnings).size(), 2U);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0], path.string() + ": not read of its lights: note, outer_cone_angel");
+}
+
 TEST(LightFile, DirectionsBecomeUnitVectors) {
   const TemporaryFolder folder;
   const auto path =
