@@ -1,6 +1,9 @@
 #include "cli/add_options.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/output_paths.h"
@@ -99,6 +102,19 @@ CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& 
                       value = t;
                     })
       ->required();
+}
+
+bool was_given(const CLI::App& command, const std::string& option) { return command.get_option(option)->count() > 0; }
+
+std::vector<std::string> idle_options(const CLI::App& command, const std::vector<std::string>& names,
+                                      const std::vector<std::string>& needed) {
+  const auto given = [&](const std::string& name) { return was_given(command, name); };
+  if (std::any_of(needed.begin(), needed.end(), given)) return {};
+  std::vector<std::string> warnings;
+  for (const std::string& name : names) {
+    if (given(name)) warnings.push_back(fmt::format("{}: does nothing without {}", name, fmt::join(needed, " or ")));
+  }
+  return warnings;
 }
 
 void set_examples(CLI::App& command, const std::string& examples) { command.footer("Example:\n" + examples); }

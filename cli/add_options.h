@@ -67,6 +67,12 @@ std::vector<std::string> input_files(CLI::App& command);
 CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& value,
                         const std::vector<std::string>& extensions);
 
+bool was_given(const CLI::App& command, const std::string& option);
+
+// Of options that were given and do nothing as none of `needed` was: a warning each.
+std::vector<std::string> idle_options(const CLI::App& command, const std::vector<std::string>& names,
+                                      const std::vector<std::string>& needed);
+
 // Examples shown under --help, one a line.
 void set_examples(CLI::App& command, const std::string& examples);
 

@@ -24,6 +24,7 @@ struct PaintCommand {
   IlluminationPictureOptions picture;
   std::string scene, strokes, from, output;
   std::optional<float> unpainted_weight;
+  const CLI::App* command = nullptr;
 };
 
 constexpr float kUnpaintedWeightOnCurrent = 1;
@@ -97,6 +98,17 @@ void print_summary(Session& session, const PaintCommand& options, const inverse:
                  aligned_rows(rows));
 }
 
+void warn_of_idle_options(const PaintCommand& options, Session& session) {
+  session.warn(idle_options(*options.command, {"--camera", "--width", "--height"}, {"--picture"}));
+  session.warn(idle_options(*options.command, view_options(), {"--picture"}));
+  if (options.from.empty()) return;
+  for (const char* name : {"--on", "--max-edge"}) {
+    if (was_given(*options.command, name)) {
+      session.warn(fmt::format("{}: does nothing with --from, which has receivers of its own", name));
+    }
+  }
+}
+
 int run_paint(const PaintCommand& options) {
   Session session(options.common);
   require_picture(options.picture);
@@ -105,6 +117,7 @@ int run_paint(const PaintCommand& options) {
   const inverse::Target base = make_base(options, strokes, session);
   const inverse::PaintResult result = apply_strokes(options, base, strokes);
   session.stop_if_interrupted();
+  warn_of_idle_options(options, session);
   warn_of_misses(options, result, session);
   inverse::save_target(result.target, options.output);
   save_illumination_picture(options.picture, options.scene, options.transport, result.target, session);
@@ -116,6 +129,7 @@ int run_paint(const PaintCommand& options) {
 
 CommandRun add_paint(CLI::App& command) {
   const auto options = std::make_shared<PaintCommand>();
+  options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_input(command, {"--strokes", "S.json", "The brush strokes"}, options->strokes);
   add_input_file(command, {"--from", "T.glb", "Start from this target instead of the base the strokes name"},

@@ -24,6 +24,7 @@ struct RenderCommand {
   FrameOptions frame;
   std::string scene, lights, camera, output;
   bool preview = false;
+  const CLI::App* command = nullptr;
 };
 
 std::filesystem::path preview_of(const RenderCommand& options) {
@@ -82,6 +83,7 @@ int run_render(const RenderCommand& options) {
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   warn_of_darkness(stage, lights, session);
+  session.warn(idle_options(*options.command, view_options(), {"--preview"}));
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                              {trace_options(options.transport, options.common), session.control()});
@@ -95,6 +97,7 @@ int run_render(const RenderCommand& options) {
 
 CommandRun add_render(CLI::App& command) {
   const auto options = std::make_shared<RenderCommand>();
+  options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command, {"-o,--output", "F.exr", "The frame"}, options->output, {".exr"});
   add_input_file(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);

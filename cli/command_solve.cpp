@@ -18,6 +18,7 @@ namespace chiaro::cli {
 namespace {
 
 struct SolveCommand {
+  const CLI::App* command = nullptr;
   CommonOptions common;
   SolveChoices choices;
   std::string scene, cache, report, from, save_target, output;
@@ -48,6 +49,13 @@ void print_summary(Session& session, const SolveCommand& options, const WantedTa
   session.finish(summary, wanted.text + solve_text(result) + written);
 }
 
+void warn_of_idle_options(const SolveCommand& options, Session& session) {
+  const std::vector<std::string> pictures{"--target-image", "--target-lightmap"};
+  session.warn(idle_options(*options.command, view_options(), pictures));
+  session.warn(idle_options(*options.command, {"--image-content", "--image-space", "--keep-white"}, pictures));
+  session.warn(idle_options(*options.command, {"--lightmap-uv"}, {"--target-lightmap"}));
+}
+
 void refuse_what_excludes_each_other(const SolveCommand& options) {
   const bool in_place = options.choices.constraints.keep_positions;
   if (in_place && !options.report.empty()) {
@@ -69,6 +77,7 @@ int run_solve(SolveCommand options) {
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);
+  warn_of_idle_options(options, session);
   const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
   if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   session.stop_if_interrupted();
@@ -91,6 +100,7 @@ int run_solve(SolveCommand options) {
 
 CommandRun add_solve(CLI::App& command) {
   const auto options = std::make_shared<SolveCommand>();
+  options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command,
              {"-o,--output", "LIGHTS.glb", "SCENE with the lights found; LIGHTS.json, the lights alone, beside it"},

@@ -31,6 +31,8 @@ void add_view_options(CLI::App& command, ViewChoice& choice) {
              [&choice](const std::string& text) { parse_exposure(text, choice); });
 }
 
+std::vector<std::string> view_options() { return {"--ocio", "--display", "--view", "--look", "--exposure"}; }
+
 void require_view(const ViewChoice& choice) { displayed(renderer::make_image(1, 1, {"R", "G", "B"}), choice); }
 
 renderer::Image displayed(const renderer::Image& image, const ViewChoice& choice) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "renderer/core/vec.h"
 #include "renderer/image/color_management.h"
@@ -22,6 +23,9 @@ struct ViewChoice {
 };
 
 void add_view_options(CLI::App& command, ViewChoice& choice);
+
+// Their names.
+std::vector<std::string> view_options();
 
 // Error where the config, the display or the view does not exist: asked before the long work starts.
 void require_view(const ViewChoice& choice);

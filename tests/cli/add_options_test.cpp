@@ -1,0 +1,30 @@
+#include "cli/add_options.h"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+
+namespace chiaro::cli {
+namespace {
+
+TEST(CliAddOptions, OptionsThatDoNothingAreTold) {
+  const auto told = [](const std::string& line) {
+    CLI::App command;
+    std::string a, b, c;
+    bool picture = false, lightmap = false;
+    add_text(command, {"--a", "A", ""}, a);
+    add_text(command, {"-b,--bee", "B", ""}, b);
+    add_text(command, {"--c", "C", ""}, c);
+    add_flag(command, "--picture", picture, "");
+    add_flag(command, "--lightmap", lightmap, "");
+    command.parse(line);
+    return idle_options(command, {"--a", "--bee"}, {"--picture", "--lightmap"});
+  };
+  EXPECT_EQ(told("--c 1"), std::vector<std::string>{});
+  EXPECT_EQ(told("-b 1 --a 2"), (std::vector<std::string>{"--a: does nothing without --picture or --lightmap",
+                                                          "--bee: does nothing without --picture or --lightmap"}));
+  EXPECT_EQ(told("-b 1 --lightmap"), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace chiaro::cli
