@@ -186,7 +186,7 @@ renderer::SurfaceSample sample_at(const Receivers& receivers, const ReceiverWeig
   }
   const float rounding = renderer::surface_rounding(max_component(abs(value.position)), radius);
   return {renderer::offset_point(value.position, value.normal, rounding),
-          length(normal) > 0 ? normalize(normal) : value.normal};
+          length(normal) > 0 ? normalize(normal) : value.normal, rounding};
 }
 
 // Illumination is taken where values are, and not where nothing is known: a receiver under the edge of what stands

@@ -11,14 +11,14 @@ using renderer::SurfaceSample;
 using renderer::Vec3f;
 
 float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
-  const Vec3f d = light - at.position;
+  const Vec3f d = light - at.on_surface();
   const float d2 = length_squared(d), projected = dot(d, at.normal);
   return projected > 0 ? projected / (renderer::kPi * d2 * std::sqrt(d2)) : 0;
 }
 
 // With r = x − p: I(c) n·r / (π |r|³), where c = −r·axis / |r|.
 DirectTerm unoccluded_term(const SurfaceSample& at, const UnityLight& light) {
-  const Vector3d r = light.position - to_eigen(at.position), n = to_eigen(at.normal);
+  const Vector3d r = light.position - to_eigen(at.on_surface()), n = to_eigen(at.normal);
   const double projected = n.dot(r);
   if (projected <= 0) return {};
   const double d2 = r.squaredNorm(), d = std::sqrt(d2), scale = 1 / (EIGEN_PI * d2 * d);
@@ -34,12 +34,12 @@ DirectTerm unoccluded_term(const SurfaceSample& at, const UnityLight& light) {
 }
 
 bool sees(const renderer::RayTracer& tracer, const SurfaceSample& at, Vec3f light, std::uint32_t seed) {
-  if (dot(light - at.position, at.normal) <= 0) return false;
+  if (dot(light - at.on_surface(), at.normal) <= 0) return false;
   return !tracer.occluded_between(renderer::offset_point(at.position, at.normal), light, seed);
 }
 
 float visible_part(const renderer::RayTracer& tracer, const SurfaceSample& at, Vec3f light) {
-  if (dot(light - at.position, at.normal) <= 0) return 0;
+  if (dot(light - at.on_surface(), at.normal) <= 0) return 0;
   return tracer.transmittance_between(renderer::offset_point(at.position, at.normal), light);
 }
 

@@ -39,7 +39,7 @@ std::optional<GatherHit> gather(const RayTracer& tracer, const SurfaceSample& fr
   if (!hit) return std::nullopt;
   const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
   const Vec3f in_front = renderer::offset_point(point.position, point.geometric_normal, point.rounding);
-  return GatherHit{{in_front, point.shading_normal}, hemispherical_albedo(point)};
+  return GatherHit{{in_front, point.shading_normal, point.rounding}, hemispherical_albedo(point)};
 }
 
 std::vector<SurfaceSample> trace_gather_path(const RayTracer& tracer, SurfaceSample from, Sampler sampler) {

@@ -162,9 +162,10 @@ void place_samples(Receivers& r) {
   for (const Receivers::Part& part : r.parts) {
     const float rounding = part_rounding(r, part), off_edges = std::max(nudge, kLeastNudge * rounding);
     for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
+      const bool has_face = face[i] != ~0U;
       const Vec3f position =
-          face[i] == ~0U ? r.positions[i] : sample_position(r, i, r.triangles[face[i]], off_edges, rounding);
-      r.samples[i] = {position, r.normals[i]};
+          has_face ? sample_position(r, i, r.triangles[face[i]], off_edges, rounding) : r.positions[i];
+      r.samples[i] = {position, r.normals[i], has_face ? rounding : 0};
     }
   }
 }

@@ -107,6 +107,9 @@ Vec3f PathTracer::light_along(const Ray& ray, const Media* media) const {
 Vec3f PathTracer::light_through(const Vertex& v, const LightSample& from, std::uint32_t alpha_seed) const {
   Ray ray{v.ray_origin(from.to_light), from.to_light};
   ray.far = from.reach;
+  if (max_component(abs(v.stand_off)) > 0 && from.reach != kInfinity) {
+    ray.direction = v.position + from.reach * from.to_light - ray.origin, ray.far = 1;
+  }
   ray.alpha_seed = alpha_seed;
   ray.clear = from.clear;
   if (!v.sees_past_triangle(from.to_light)) return light_along(ray, v.media_towards(from.to_light));
@@ -332,6 +335,7 @@ void PathTracer::add_scattered(const SurfacePoint& point, const Media& media, Ve
 
 PathTracer::Vertex PathTracer::vertex_at(const Receiver& receiver) const {
   Vertex vertex{receiver.position, receiver.normal, 0, receiver.normal, nullptr, 0};
+  vertex.stand_off = receiver.stand_off * receiver.normal;
   vertex.media = solids_ ? &receiver.media : nullptr;
   return vertex;
 }

@@ -47,7 +47,8 @@ class PathTracer {
   // A point on a surface that is white.
   struct Receiver {
     Vec3f position, normal;
-    Media media{};  // on the side of the normal
+    float stand_off = 0;  // metres in front of it that its rays begin
+    Media media{};        // on the side of the normal
   };
 
   // Keeps references to all, which must outlive it. How many samples are taken is the caller's business, and so is to

@@ -30,6 +30,7 @@ struct PathTracer::Vertex {
   }
 
   LightSource punctual = LightSource::kPunctual;  // how punctual lights are to be seen from here
+  Vec3f stand_off{};                              // to where a receiver's rays begin
   const Media* media = nullptr;                   // on the viewer's side; nullptr: none
   const Media* behind = nullptr;                  // on the other side, of surfaces that let light through
 
@@ -56,7 +57,7 @@ struct PathTracer::Vertex {
     return bsdf->transmits() ? Vec3f{} : bsdf->normal();
   }
   Vec3f ray_origin(Vec3f direction) const {
-    return offset_point(position, transmits_to(direction) ? -normal : normal, rounding);
+    return offset_point(position + stand_off, transmits_to(direction) ? -normal : normal, rounding);
   }
   // Where a ray from so many metres away ends before it meets the vertex's own surface.
   Vec3f ray_end(float distance) const {

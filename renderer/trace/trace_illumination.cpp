@@ -62,7 +62,7 @@ void add_batch(const Sampling& sampling, const PathTracer::Receiver& at, int bat
 Estimate estimate(const Sampling& sampling, const SurfaceSample& point, std::uint32_t stream,
                   std::vector<Vec3f>& per_light) {
   const Vec3f in_front = offset_point(point.position, point.normal);
-  const PathTracer::Receiver at{point.position, point.normal, sampling.paths.media_at(in_front)};
+  const PathTracer::Receiver at{point.on_surface(), point.normal, point.stand_off, sampling.paths.media_at(in_front)};
   PathLight exact;
   exact.per_light.assign(per_light.size(), {});
   add_exact(sampling, at, stream, exact);

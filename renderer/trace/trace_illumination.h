@@ -16,7 +16,11 @@ namespace chiaro::renderer {
 // off the surface that rays meet: who made it knows the surface's size.
 struct SurfaceSample {
   Vec3f position;
-  Vec3f normal;  // unit; shading normal: the cosine is taken with it
+  Vec3f normal;         // unit; shading normal: the cosine is taken with it
+  float stand_off = 0;  // metres that the position is in front of its surface
+
+  // Where light falls.
+  Vec3f on_surface() const { return position - stand_off * normal; }
 };
 
 struct Illumination {

@@ -64,7 +64,7 @@ TEST_F(IrradianceRecordsOf, StandDenserNearOtherSurfaces) {
   std::vector<char> is_record(receivers.size(), 0);
   for (const std::size_t i : records.receivers) is_record[i] = 1;
   for (std::size_t i = 0; i < receivers.size(); ++i) {
-    const auto& [p, n] = receivers.samples[i];
+    const renderer::Vec3f p = receivers.samples[i].position, n = receivers.samples[i].normal;
     if (n.y < 0.99F || p.y > 0.01F) continue;
     const bool at_wall = p.x < 0.2F || p.z < 0.2F;
     (at_wall ? near : far) += 1;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "inverse/transport/direct_light.h"
 #include "renderer/core/error.h"
 #include "renderer/io/load_gltf.h"
 #include "tests/support/code_scenes.h"
@@ -166,6 +167,28 @@ TEST(Receivers, OfAPlaneUnderALightHaveTheClosedForm) {
 }
 
 // A tilted plane through the origin, so many metres across, and a light a tenth of that above it.
+// A lamp an eighth of a metre above the floor, whose receivers rounding keeps off the surface by as much as millimetres.
+TEST(Receivers, FarFromTheOriginAreLitWhereTheirSurfaceIs) {
+  for (const float away : {0.0F, 1024.0F, 8192.0F}) {
+    Scene scene;
+    test::add_mesh(scene, test::rectangle({away - 1, 0, away - 1}, {0, 0, 2}, {2, 0, 0}), test::lambert({1, 1, 1}),
+                   "floor");
+    const RayTracer tracer(scene);
+    const Receivers receivers = make_receivers(scene, {.max_edge = 0.5F});
+    const renderer::Lights lamp{renderer::PointLight{"", {away, 0.125F, away}, {10, 10, 10}}};
+    const auto traced = renderer::trace_illumination(tracer, receivers.samples, lamp, {.samples = 1, .bounces = 0});
+    float brightest = 0;
+    for (const renderer::Vec3f value : traced.value) brightest = std::max(brightest, value.x);
+    const double expected = 10 / (0.125 * 0.125) / M_PI;
+    EXPECT_NEAR(brightest / expected, 1, 0.002 + 1e-6 * double(away)) << away;
+    float unity = 0;
+    for (const auto& at : receivers.samples) {
+      unity = std::max(unity, unoccluded_illumination(at, {away, 0.125F, away}));
+    }
+    EXPECT_NEAR(10 * unity / brightest, 1, 1e-4) << away;
+  }
+}
+
 TEST(Receivers, NoneIsHiddenByItsOwnPlaneWhateverItsSize) {
   for (const float size : {3e-3F, 9e-3F, 3.0F, 9.0F, 30.0F, 3e3F, 3e4F}) {
     for (const Vec3f tilt : {Vec3f{1, 2, 3}, Vec3f{-3, 1, 0.2F}, Vec3f{0.1F, -1, 0.3F}}) {
