@@ -14,43 +14,52 @@ Vec3f absorbed(Vec3f absorption, float distance) {
   return {absorbed(absorption.x, distance), absorbed(absorption.y, distance), absorbed(absorption.z, distance)};
 }
 
+// A solid that rays from a point meet the boundary of.
+struct SolidAround {
+  int material = 0;
+  Vec3f absorption{};
+  int leaving = 0, entering = 0;  // rays, where they meet it first
+  float distance = kInfinity;     // of the nearest place where one leaves it
+};
+
+SolidAround& find_or_add(const SurfacePoint& boundary, std::vector<SolidAround>& solids) {
+  const auto is_its = [&](const SolidAround& solid) { return solid.material == boundary.material; };
+  const auto found = std::find_if(solids.begin(), solids.end(), is_its);
+  if (found != solids.end()) return *found;
+  return solids.emplace_back(SolidAround{.material = boundary.material, .absorption = boundary.layers->absorption});
+}
+
+void ask_ray(const RayTracer& tracer, Ray ray, std::vector<SolidAround>& solids) {
+  std::vector<int> met;  // materials
+  float distance = 0;
+  for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
+    const auto hit = tracer.intersect(ray);
+    if (!hit) return;
+    const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
+    distance += hit->distance;
+    ray.origin = point_behind(point);
+    const bool is_boundary = point.layers && point.layers->solid;
+    if (!is_boundary || std::find(met.begin(), met.end(), point.material) != met.end()) continue;
+    met.push_back(point.material);
+    SolidAround& solid = find_or_add(point, solids);
+    ++(point.front ? solid.entering : solid.leaving);
+    if (!point.front) solid.distance = std::min(solid.distance, distance);
+  }
+}
+
 }  // namespace
 
 Media Media::at(const RayTracer& tracer, Vec3f position) {
-  struct Votes {
-    Solid solid;
-    int inside = 0;
-    float distance = kInfinity;
-  };
   // None along an axis, where surfaces often lie.
   constexpr Vec3f kDirections[] = {{0.88F, 0.31F, 0.36F},   {-0.83F, 0.41F, -0.38F}, {0.29F, 0.90F, -0.33F},
                                    {-0.35F, -0.87F, 0.34F}, {0.42F, -0.27F, -0.87F}, {-0.33F, 0.24F, 0.91F}};
-  std::vector<Votes> met;
-  for (const Vec3f& direction : kDirections) {
-    std::vector<int> seen;  // materials
-    Ray ray{position, direction, 0, kInfinity, 0};
-    float distance = 0;
-    for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
-      const auto hit = tracer.intersect(ray);
-      if (!hit) break;
-      const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
-      distance += hit->distance;
-      ray.origin = point_behind(point);
-      const bool boundary = point.layers && point.layers->solid;
-      if (!boundary || std::find(seen.begin(), seen.end(), point.material) != seen.end()) continue;
-      seen.push_back(point.material);
-      auto votes =
-          std::find_if(met.begin(), met.end(), [&](const Votes& v) { return v.solid.material == point.material; });
-      if (votes == met.end()) votes = met.insert(met.end(), {{point.material, point.layers->absorption}});
-      votes->inside += point.front ? -1 : 1;
-      if (!point.front) votes->distance = std::min(votes->distance, distance);
-    }
-  }
-  std::erase_if(met, [](const Votes& v) { return v.inside <= 0; });
+  std::vector<SolidAround> solids;
+  for (const Vec3f& direction : kDirections) ask_ray(tracer, {position, normalize(direction), 0, kInfinity, 0}, solids);
+  std::erase_if(solids, [](const SolidAround& solid) { return solid.leaving <= solid.entering; });
   // The innermost, whose boundary is the nearest, comes last.
-  std::stable_sort(met.begin(), met.end(), [](const Votes& a, const Votes& b) { return a.distance > b.distance; });
+  std::stable_sort(solids.begin(), solids.end(), [](const auto& a, const auto& b) { return a.distance > b.distance; });
   Media media;
-  for (const Votes& votes : met) media.enter(votes.solid);
+  for (const SolidAround& solid : solids) media.enter({solid.material, solid.absorption});
   return media;
 }
 
