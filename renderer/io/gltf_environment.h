@@ -9,11 +9,10 @@
 
 namespace chiaro::renderer {
 
-// The image-based light of the default scene, or of the first scene that has one where there is no default. Its
-// radiance is that of the cube map's first, sharpest level, sRGB colours divided by alpha as the extension packs them,
-// times its intensity; what the extension adds for rasterizers (blurred levels, irradiance coefficients) follows from
-// it and is not read. Needs the document's buffers. Error, naming the image, for faces that are missing, not square or
-// not of one size.
+// The image-based light of the scene that is shown. Its radiance is that of the cube map's first, sharpest level, sRGB
+// colours divided by alpha as the extension packs them, times its intensity; what the extension adds for rasterizers
+// (blurred levels, irradiance coefficients) follows from it and is not read. Needs the document's buffers. Error, naming
+// the image, for faces that are missing, not square or not of one size.
 std::optional<EnvironmentLight> read_environment(const GltfDocument& document, std::vector<std::string>& warnings);
 
 // Whether there is one.
