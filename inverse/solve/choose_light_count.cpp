@@ -26,8 +26,7 @@ constexpr int kCutsAtOnce = 2;    // in turn, from the smallest …
 constexpr int kIdleCuts = 2;      // … until so many in a row explain no more
 constexpr double kNoise = 2;      // times the noise, or less: there is nothing but noise and the errors of transport
 constexpr double kNearNoise = 5;  // times the noise, or less: little else is left
-constexpr double kKneeOfLimited = 1.02;  // in place of kKnee, where lights are as bright as they may be …
-constexpr double kAtLimit = 0.99;        // … at so much of the intensity allowed, or more
+constexpr double kKneeOfLimited = 1.02;  // in place of kKnee, where lights are as bright as they may be
 constexpr double kNoiseMargin = 1.02;    // an error this close to the noise is explained
 constexpr double kStill = 5e-4;          // of the region's diagonal: indirect light hardly changes
 constexpr double kRounding = 1e-4;       // an error this small is that of floats, and explained
@@ -161,7 +160,7 @@ class Search {
   // Beside lights that are each as bright as they may be a further one explains a part of what is left, and no more.
   double knee_factor(const Candidate& set) const {
     const bool limited = std::any_of(set.lights.begin(), set.lights.end(), [&](const LightEstimate& light) {
-      return light.intensity.maxCoeff() >= kAtLimit * observations_.rules.max_intensity;
+      return observations_.rules.limits(light.intensity.maxCoeff());
     });
     return limited ? kKneeOfLimited : kKnee;
   }

@@ -22,21 +22,9 @@ constexpr double kComparedPaths = 2e6;     // of all receivers, where intensitie
 constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
 constexpr double kNinety = 1.645;          // standard deviations to either side
 
-Vec3f& intensity_of(renderer::PointLight& light) { return light.intensity; }
-Vec3f& intensity_of(renderer::SpotLight& light) { return light.intensity; }
-Vec3f& intensity_of(renderer::DirectionalLight& light) { return light.illuminance; }
-Vec3f& intensity_of(renderer::EnvironmentLight&) {
-  CHIARO_CHECK(false);
-  std::abort();
-}
-
 renderer::Light with_intensity(renderer::Light light, Vec3f intensity) {
-  std::visit([&](auto& l) { intensity_of(l) = intensity; }, light);
+  intensity_of(light) = intensity;
   return light;
-}
-
-Vec3f intensity_of(renderer::Light light) {
-  return std::visit([](auto& l) { return intensity_of(l); }, light);
 }
 
 std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::Lights& lights,

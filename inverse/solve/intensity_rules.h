@@ -15,6 +15,8 @@ struct IntensityRules {
   bool one_color = false;                                          // all lights have the same
   std::optional<std::array<double, 2>> kelvin;                     // all are black bodies of from … to
 
+  // A light whose brightest channel has so many candela is, but for a hundredth, as bright as it may be.
+  bool limits(double brightest) const { return brightest >= 0.99 * max_intensity; }
   bool color_is_ruled() const { return one_color || kelvin; }
   bool any() const { return color_is_ruled() || max_intensity < std::numeric_limits<double>::infinity(); }
 };

@@ -130,11 +130,9 @@ constexpr const char* kWithoutConstraints = "without the constraints lights may 
 
 // As bright as they may be.
 bool any_at_limit(const SolveProblem& problem, const SolveResult& result) {
-  constexpr float kAtLimit = 0.99F;
   return std::any_of(result.lights.begin(), result.lights.end(), [&](const FoundLight& found) {
     const auto* light = std::get_if<renderer::PointLight>(&found.light);
-    return light != nullptr &&
-           double(max_component(light->intensity)) >= double(kAtLimit) * problem.intensities.max_intensity;
+    return light != nullptr && problem.intensities.limits(double(max_component(light->intensity)));
   });
 }
 

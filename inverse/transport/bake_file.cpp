@@ -196,7 +196,7 @@ void merge_transport_caches(std::span<const fs::path> files, const fs::path& out
   require_all(shards);
   const TransportCache& header = shards.front()->header();
   const std::size_t lights = header.grid.positions.size();
-  const auto write = [&](const fs::path& aside) {
+  renderer::write_atomically(output, [&](const fs::path& aside) {
     TransportCacheWriter writer(aside, header, 0, header.receiver_count);
     for (std::size_t light = 0; light < lights; light += kBand) {
       for (const auto& shard : shards) {
@@ -210,14 +210,6 @@ void merge_transport_caches(std::span<const fs::path> files, const fs::path& out
       if (control.report) control.report("merge", double(std::min(light + kBand, lights)) / double(lights));
     }
     writer.close();
-  };
-  renderer::write_atomically(output, [&](const fs::path& aside) {
-    try {
-      write(aside);
-    } catch (const Error& error) {
-      if (error.parts().file != aside.string()) throw;
-      throw Error({output.string(), error.parts().place, error.parts().problem, error.parts().expected});
-    }
   });
 }
 

@@ -128,6 +128,10 @@ void write_atomically(const std::filesystem::path& path,
   try {
     write(aside);
     move_into_place(aside, path);
+  } catch (const Error& error) {
+    std::filesystem::remove(aside, ignored);
+    if (error.parts().file != aside.string()) throw;
+    throw Error({path.string(), error.parts().place, error.parts().problem, error.parts().expected});
   } catch (...) {
     std::filesystem::remove(aside, ignored);
     throw;

@@ -9,7 +9,7 @@ namespace chiaro::renderer {
 
 // Calls write(path) with a name beside `path` (same folder, same extension), syncs what it wrote and renames it to
 // `path`. If write throws, or the write fails, nothing is left behind and what was at `path` before stays.
-// Missing parent folders are an Error.
+// An Error of write that names the other file names `path` instead. Missing parent folders are an Error.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
@@ -22,8 +22,8 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 // Removes what is being written aside. For signal handlers that end the program.
 void remove_unfinished_files();
 
-// The bytes of a file; Error where it is missing, a folder, or unreadable; Interruption where a signal came while a pipe
-// was waited for.
+// The bytes of a file; Error where it is missing, a folder, or unreadable; Interruption where a signal came while a
+// pipe was waited for.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace chiaro::renderer

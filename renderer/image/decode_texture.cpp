@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
-#include "renderer/image/decode_png.h"
-#include "renderer/image/decode_webp.h"
+#include "renderer/image/decode_samples.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
 #include "renderer/image/memory_file.h"
@@ -17,16 +16,15 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
-constexpr std::string_view kPngName = "texture.png", kWebpName = "texture.webp", kAvifName = "texture.avif";
+constexpr std::string_view kAvifName = "texture.avif";
 
 // The name of a file of the format that the bytes begin like; empty: none that textures come in.
 std::string file_name_for(std::string_view encoded) {
   const auto begins = [&](std::string_view magic, std::size_t at = 0) {
     return encoded.size() >= at + magic.size() && encoded.substr(at, magic.size()) == magic;
   };
-  if (is_png(encoded)) return std::string(kPngName);
+  if (has_samples(encoded)) return "texture";
   if (begins("\xff\xd8\xff")) return "texture.jpg";
-  if (is_webp(encoded)) return std::string(kWebpName);
   if (begins("ftypavif", 4) || begins("ftypavis", 4)) return std::string(kAvifName);
   if (begins("BM")) return "texture.bmp";
   if (begins("DDS ")) return "texture.dds";
@@ -99,20 +97,12 @@ std::vector<std::uint8_t> narrowed(const std::vector<std::uint8_t>& samples) {
   return bytes;
 }
 
-Size size_of(const SamplesHeader& header) { return {header.width, header.height, 1, header.channels, header.bytes()}; }
-
-Texture decode_png_texture(std::string_view encoded, const std::string& label) {
-  const SamplesHeader header = read_png_header(encoded, label);
-  check_size(size_of(header), encoded.size(), label);
-  std::vector<std::uint8_t> samples = decode_png(encoded, label);
+Texture decode_samples_texture(std::string_view encoded, const std::string& label) {
+  const SamplesHeader header = read_samples_header(encoded, label);
+  check_size({header.width, header.height, 1, header.channels, header.bytes()}, encoded.size(), label);
+  std::vector<std::uint8_t> samples = decode_samples(encoded, label);
   if (header.bytes_per_sample == 2) samples = narrowed(samples);
   return texture_of(std::move(samples), header.width, header.height, header.channels);
-}
-
-Texture decode_webp_texture(std::string_view encoded, const std::string& label) {
-  const SamplesHeader header = read_webp_header(encoded, label);
-  check_size(size_of(header), encoded.size(), label);
-  return texture_of(decode_webp(encoded, label), header.width, header.height, header.channels);
 }
 
 // Its reader wants a file.
@@ -127,8 +117,7 @@ Texture decode_avif(std::string_view encoded, const OIIO::ImageSpec& config, con
 }
 
 Texture decode(std::string_view encoded, const std::string& name, const std::string& label) {
-  if (name == kPngName) return decode_png_texture(encoded, label);
-  if (name == kWebpName) return decode_webp_texture(encoded, label);
+  if (has_samples(encoded)) return decode_samples_texture(encoded, label);
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   if (name == kAvifName) return decode_avif(encoded, config, label);

@@ -15,7 +15,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
-#include "renderer/image/decode_png.h"
+#include "renderer/image/decode_samples.h"
 #include "renderer/image/decode_webp.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/exr_header.h"
@@ -78,7 +78,7 @@ bool has_extension(const std::filesystem::path& path, std::initializer_list<std:
 std::string bytes_to_decode(const std::filesystem::path& path) {
   std::string first(12, 0);
   std::ifstream(path, std::ios::binary).read(first.data(), std::streamsize(first.size()));
-  return is_png(first) || is_webp(first) ? read_file(path) : "";
+  return has_samples(first) ? read_file(path) : "";
 }
 
 struct OpenImage {
@@ -94,8 +94,7 @@ OpenImage open(const std::filesystem::path& path) {
   OpenImage image{bytes_to_decode(path)};
   const bool webp = is_webp(image.encoded);
   if (!image.encoded.empty()) {
-    image.header =
-        webp ? read_webp_header(image.encoded, path.string()) : read_png_header(image.encoded, path.string());
+    image.header = read_samples_header(image.encoded, path.string());
     image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
   } else if (has_extension(path, {".jpg", ".jpeg"})) {
     if (const auto damage = find_jpeg_damage(read_file(path))) {
@@ -250,8 +249,7 @@ void write_through_memory(const Image& image, const std::filesystem::path& path,
 }
 
 void decode_pixels(const OpenImage& open, const std::string& file, Image& image) {
-  const std::vector<std::uint8_t> samples =
-      is_webp(open.encoded) ? decode_webp(open.encoded, file) : decode_png(open.encoded, file);
+  const std::vector<std::uint8_t> samples = decode_samples(open.encoded, file);
   const bool wide = open.header.bytes_per_sample == 2;
   CHIARO_CHECK(samples.size() == image.pixels.size() * (wide ? 2 : 1));
   OIIO::convert_image(image.channel_count(), image.width, image.height, 1, samples.data(),

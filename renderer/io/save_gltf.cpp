@@ -142,12 +142,6 @@ void add_lights(ordered_json& root, const Lights& lights) {
   use_extension(root);
 }
 
-Vec3f intensity_of(const Light& light) {
-  if (const auto* point = std::get_if<PointLight>(&light)) return point->intensity;
-  if (const auto* spot = std::get_if<SpotLight>(&light)) return spot->intensity;
-  return std::get<DirectionalLight>(light).illuminance;
-}
-
 // Definitions that several nodes share become their own.
 void relight(ordered_json& root, const std::vector<int>& nodes, const Lights& lights) {
   CHIARO_CHECK(nodes.size() == lights.size());

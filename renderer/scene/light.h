@@ -2,8 +2,10 @@
 // Lights, in photometric units per Rec.709 channel. To add a kind: add a struct, list it in Light, and follow the
 // compiler through the std::visit calls (trace/light_sampling, io/light_file, io/gltf_lights).
 
+#include <concepts>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -47,6 +49,15 @@ using Lights = std::vector<Light>;
 
 inline const std::string& name_of(const Light& light) {
   return std::visit([](const auto& l) -> const std::string& { return l.name; }, light);
+}
+
+// Candela, or lux of a directional light. Of Light or const Light; environments have none.
+template <class AnyLight>
+requires std::same_as<std::remove_const_t<AnyLight>, Light>
+auto& intensity_of(AnyLight& light) {
+  if (auto* point = std::get_if<PointLight>(&light)) return point->intensity;
+  if (auto* spot = std::get_if<SpotLight>(&light)) return spot->intensity;
+  return std::get<DirectionalLight>(light).illuminance;
 }
 
 inline bool is_environment(const Light& light) { return std::holds_alternative<EnvironmentLight>(light); }

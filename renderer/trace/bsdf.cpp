@@ -72,8 +72,7 @@ Vec3f Bsdf::eval_below_clearcoat(Vec3f to_viewer, Vec3f to_light, LightSource so
 
 // Its normal is another than that of what it covers.
 bool Bsdf::has_clearcoat_towards(Vec3f to_light) const {
-  return layers_ && layers_->clearcoat.present() && sees(to_light, layers_->clearcoat.cosine(to_light)) &&
-         layers_->clearcoat.cosine(to_light) > 0;
+  return layers_ && layers_->clearcoat.present() && sees(to_light, layers_->clearcoat.cosine(to_light));
 }
 
 Bsdf::Choice Bsdf::choice(Vec3f to_viewer, Vec3f wo) const {

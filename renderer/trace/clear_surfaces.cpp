@@ -14,6 +14,8 @@ Vec3f absorbed(Vec3f absorption, float distance) {
   return {absorbed(absorption.x, distance), absorbed(absorption.y, distance), absorbed(absorption.z, distance)};
 }
 
+bool bounds_solid(const SurfacePoint& surface) { return surface.layers && surface.layers->solid; }
+
 // A solid that rays from a point meet the boundary of.
 struct SolidAround {
   int material = 0;
@@ -38,8 +40,7 @@ void ask_ray(const RayTracer& tracer, Ray ray, std::vector<SolidAround>& solids)
     const SurfacePoint point = make_surface_point(tracer.scene(), ray, *hit);
     distance += hit->distance;
     ray.origin = point_behind(point);
-    const bool is_boundary = point.layers && point.layers->solid;
-    if (!is_boundary || std::find(met.begin(), met.end(), point.material) != met.end()) continue;
+    if (!bounds_solid(point) || std::find(met.begin(), met.end(), point.material) != met.end()) continue;
     met.push_back(point.material);
     SolidAround& solid = find_or_add(point, solids);
     ++(point.front ? solid.entering : solid.leaving);
@@ -68,7 +69,7 @@ void Media::enter(const Solid& solid) {
 }
 
 void Media::cross(const SurfacePoint& surface) {
-  if (!surface.layers || !surface.layers->solid) return;
+  if (!bounds_solid(surface)) return;
   if (surface.front) return enter({surface.material, surface.layers->absorption});
   for (int i = count_ - 1; i >= 0; --i) {
     if (inside_[i].material != surface.material) continue;
@@ -79,7 +80,7 @@ void Media::cross(const SurfacePoint& surface) {
 }
 
 Vec3f Media::transmittance(const SurfacePoint& surface, float distance) const {
-  const bool behind_back = surface.layers && surface.layers->solid && !surface.front;
+  const bool behind_back = bounds_solid(surface) && !surface.front;
   return behind_back ? absorbed(surface.layers->absorption, distance) : transmittance(distance);
 }
 

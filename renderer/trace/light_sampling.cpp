@@ -135,7 +135,8 @@ void EmissiveTriangles::add_instance(std::uint32_t index, std::vector<LightBound
     b.two_sided = true;
     b.intensity = area * mean_emission(scene_, mesh, t);
     emitter_[index][t] = std::uint32_t(triangles_.size());
-    triangles_.push_back({index, t, p[0], p[1], p[2], b.axis, area});
+    const float largest_coordinate = max_component(max(max(abs(p[0]), abs(p[1])), abs(p[2])));
+    triangles_.push_back({index, t, p[0], p[1], p[2], b.axis, area, largest_coordinate});
     bounds.push_back(b);
   }
 }
@@ -156,8 +157,7 @@ EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, Vec3f normal, d
   const float cosine = std::abs(dot(s.to_light, e.normal));
   if (!(cosine > 1e-7F)) return {};
   // Where floats can tell that the ray has not yet met the triangle.
-  const float coordinate = max_component(max(max(abs(e.p0), abs(e.p1)), abs(e.p2)));
-  const float rounding = surface_rounding(coordinate, s.distance);
+  const float rounding = surface_rounding(e.largest_coordinate, s.distance);
   s.reach = s.distance - std::min(2 * rounding / cosine, 0.5F * s.distance);
   s.radiance = covered_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
   s.pdf = found->probability / e.area * d2 / cosine;

@@ -80,6 +80,7 @@ class EmissiveTriangles {
     Vec3f p0, p1, p2;  // world
     Vec3f normal;      // unit
     float area;        // m²
+    float largest_coordinate;
   };
   void add_instance(std::uint32_t instance, std::vector<LightBounds>& bounds);
 
