@@ -1,12 +1,14 @@
 #include "inverse/solve/fit_in_place.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <Eigen/QR>
 
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/check_brightness.h"
 #include "inverse/solve/check_lights_in_place.h"
+#include "inverse/solve/fit_traced_columns.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/solve/traced_light.h"
@@ -20,6 +22,7 @@ constexpr std::size_t kMany = 50000;       // receivers at most
 constexpr int kLeastSamples = 64;          // paths per receiver
 constexpr double kComparedPaths = 2e6;     // of all receivers, where intensities are to be told roughly …
 constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
+constexpr int kFewerAgain = 4;             // times as few, the second time
 constexpr double kNinety = 1.645;          // standard deviations to either side
 
 renderer::Light with_intensity(renderer::Light light, Vec3f intensity) {
@@ -28,11 +31,10 @@ renderer::Light with_intensity(renderer::Light light, Vec3f intensity) {
 }
 
 std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::Lights& lights,
-                                  const std::vector<renderer::SurfaceSample>& at, int paths,
-                                  const SolveOptions& options, const renderer::Control& control) {
+                                  const std::vector<renderer::SurfaceSample>& at, const renderer::TraceOptions& trace,
+                                  const renderer::Control& control) {
   renderer::Lights unity;
   for (const renderer::Light& light : lights) unity.push_back(with_intensity(light, {1, 1, 1}));
-  const renderer::TraceOptions trace{paths, problem.bake.bounces, fresh_seed(options.seed, 6), true};
   std::vector<Column> columns;
   const auto by_light = trace_illumination_by_light(problem.tracer, at, unity, trace, control);
   for (const auto& traced : by_light.of_light) {
@@ -41,7 +43,22 @@ std::vector<Column> unity_columns(const SolveProblem& problem, const renderer::L
   return columns;
 }
 
-// Half widths, by what the fit leaves at each receiver (sandwich estimate), as light_intervals().
+struct TracedColumns {
+  std::vector<Column> columns, again;  // by other paths
+};
+
+TracedColumns trace_columns(const SolveProblem& problem, const renderer::Lights& lights,
+                            const std::vector<renderer::SurfaceSample>& at, int paths, const SolveOptions& options,
+                            const renderer::Control& control) {
+  const auto traced = [&](int samples, std::uint64_t purpose) {
+    return unity_columns(problem, lights, at, {samples, problem.bake.bounces, fresh_seed(options.seed, purpose), true},
+                         control);
+  };
+  return {traced(paths, 6), traced(paths / kFewerAgain, 8)};
+}
+
+// Half widths, by what the fit leaves at each receiver (sandwich estimate), as light_intervals(). Infinite where the
+// light brings nothing.
 std::vector<Eigen::Array3d> intensity_intervals(const Observations& observations, const std::vector<Column>& columns,
                                                 const Column& residual) {
   const auto n = Eigen::Index(columns.size());
@@ -54,7 +71,11 @@ std::vector<Eigen::Array3d> intensity_intervals(const Observations& observations
     const Eigen::MatrixXd inverse = (a.transpose() * a).completeOrthogonalDecomposition().pseudoInverse();
     const Eigen::MatrixXd pull = observations.sqrt_weight.cwiseProduct(residual.col(c)).asDiagonal() * a;
     const Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse;
-    for (Eigen::Index j = 0; j < n; ++j) half[std::size_t(j)][c] = kNinety * std::sqrt(std::max(0.0, covariance(j, j)));
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const bool shines = a.col(j).squaredNorm() > 0;
+      half[std::size_t(j)][c] =
+          shines ? kNinety * std::sqrt(std::max(0.0, covariance(j, j))) : std::numeric_limits<double>::infinity();
+    }
   }
   return half;
 }
@@ -111,7 +132,8 @@ std::vector<Eigen::Array3d> refit_over_many(const SolveProblem& problem, const r
                                             const SolveOptions& options, const renderer::Control& control) {
   const auto [samples, observations] = observe_many(problem, options, control);
   const int paths = std::clamp(int(kComparedPaths / double(samples.size())), kLeastComparedSamples, kLeastSamples);
-  return fit_intensities(observations, unity_columns(problem, lights, samples, paths, options, control)).intensity;
+  const auto [columns, again] = trace_columns(problem, lights, samples, paths, options, control);
+  return fit_traced_columns(observations, columns, again).intensity;
 }
 
 SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control) {
@@ -120,9 +142,9 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   check_lights_in_place(problem);
   const auto [samples, observations] = observe_many(problem, options, control);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
-  const std::vector<Column> columns = unity_columns(problem, problem.lights_in_place, samples, paths, options, control);
+  const auto [columns, again] = trace_columns(problem, problem.lights_in_place, samples, paths, options, control);
   result.cache_seconds = clock.finish_transport("traced_lights", {{"lights", double(columns.size())}});
-  const IntensityFit fit = fit_intensities(observations, columns);
+  const IntensityFit fit = fit_traced_columns(observations, columns, again);
   result.relative_l2_cached = error_of(observations, columns, fit.intensity);
   result.optimal_seconds =
       clock.finish("nnls", {{"relative_l2", result.relative_l2_cached}, {"kkt_residual", fit.kkt_residual}});

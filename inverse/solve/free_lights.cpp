@@ -1,5 +1,7 @@
 #include "inverse/solve/free_lights.h"
 
+#include <algorithm>
+
 namespace chiaro::inverse {
 
 FreeLights without(FreeLights free, const std::vector<std::size_t>& gone) {
@@ -13,6 +15,24 @@ FreeLights without(FreeLights free, const std::vector<std::size_t>& gone) {
     }
   }
   return free;
+}
+
+void let_the_dark_share(FreeLights& free) {
+  for (std::size_t j = 0; j < free.now.size(); ++j) {
+    if ((free.now[j].intensity > 0).any()) continue;
+    const auto brightest = std::max_element(free.now.begin(), free.now.end(), [](const auto& a, const auto& b) {
+      return a.intensity.maxCoeff() < b.intensity.maxCoeff();
+    });
+    brightest->intensity /= 2;
+    const auto shared = std::size_t(brightest - free.now.begin());
+    free.traced[j] = free.traced[shared];
+    free.now[j] = free.now[shared];
+    free.brought[j] = free.brought[shared];
+    free.indirect_traced[j] = free.indirect_traced[shared];
+    free.indirect[j] = free.indirect[shared];
+    if (!free.carried.empty()) free.carried[j] = free.carried[shared];
+    free.number[j] = free.number[shared];
+  }
 }
 
 }  // namespace chiaro::inverse

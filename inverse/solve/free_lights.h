@@ -17,4 +17,7 @@ struct FreeLights {
 // What is left without some of them, in ascending order.
 FreeLights without(FreeLights free, const std::vector<std::size_t>& gone);
 
+// Each dark light becomes the half of the brightest, where that stands.
+void let_the_dark_share(FreeLights& free);
+
 }  // namespace chiaro::inverse

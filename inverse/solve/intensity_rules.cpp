@@ -34,11 +34,6 @@ double largest_float_up_to(double limit) {
   return double(double(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded);
 }
 
-// Of one channel.
-struct NormalEquations {
-  Eigen::MatrixXd gram;  // AᵀA
-  VectorXd atb;          // Aᵀb
-};
 using Channels = std::array<NormalEquations, 3>;
 
 Channels normal_equations(const Systems& systems) {
@@ -76,6 +71,12 @@ MatrixX3d each_channel_up_to(const Channels& channels, double upper, IntensityFi
     fit.iterations += r.iterations;
   }
   return intensity;
+}
+
+std::vector<Eigen::Array3d> rows_of(const MatrixX3d& intensity) {
+  std::vector<Eigen::Array3d> rows;
+  for (Index j = 0; j < intensity.rows(); ++j) rows.emplace_back(intensity.row(j).transpose().array());
+  return rows;
 }
 
 double cost_of(const Channels& channels, const MatrixX3d& intensity) {
@@ -131,8 +132,7 @@ class RuledColors {
     }
     fit_strengths();
     result.directions = directions();
-    const MatrixX3d found = intensity();
-    for (Index j = 0; j < count_; ++j) result.intensity.emplace_back(found.row(j).transpose().array());
+    result.intensity = rows_of(intensity());
     return result;
   }
 
@@ -257,12 +257,16 @@ class RuledColors {
 
 IntensityFit fit_intensities(const Systems& systems, const IntensityRules& rules) {
   if (systems[0].a.cols() == 0) return {};
-  if (rules.color_is_ruled()) return RuledColors(normal_equations(systems), rules).fit();
+  if (rules.any()) return fit_intensities(normal_equations(systems), rules);
   IntensityFit fit;
-  const MatrixX3d found =
-      rules.any() ? each_channel_up_to(normal_equations(systems), largest_float_up_to(rules.max_intensity), fit)
-                  : each_channel_by_itself(systems, fit);
-  for (Index j = 0; j < found.rows(); ++j) fit.intensity.emplace_back(found.row(j).transpose().array());
+  fit.intensity = rows_of(each_channel_by_itself(systems, fit));
+  return fit;
+}
+
+IntensityFit fit_intensities(const Channels& channels, const IntensityRules& rules) {
+  if (rules.color_is_ruled()) return RuledColors(channels, rules).fit();
+  IntensityFit fit;
+  fit.intensity = rows_of(each_channel_up_to(channels, largest_float_up_to(rules.max_intensity), fit));
   return fit;
 }
 

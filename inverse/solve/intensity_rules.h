@@ -27,6 +27,12 @@ struct WeightedSystem {
   Eigen::VectorXd b;  // what is wanted
 };
 
+// The same as least squares ask for it.
+struct NormalEquations {
+  Eigen::MatrixXd gram;  // AᵀA
+  Eigen::VectorXd atb;   // Aᵀb
+};
+
 struct IntensityFit {
   std::vector<Eigen::Array3d> intensity;
   double kkt_residual = 0;
@@ -37,5 +43,6 @@ struct IntensityFit {
 
 // Least squares, intensities ≥ 0, over all channels.
 IntensityFit fit_intensities(const std::array<WeightedSystem, 3>& channels, const IntensityRules& rules);
+IntensityFit fit_intensities(const std::array<NormalEquations, 3>& channels, const IntensityRules& rules);
 
 }  // namespace chiaro::inverse

@@ -1,19 +1,46 @@
 #include "inverse/solve/lights_by_trace.h"
 
+#include <algorithm>
+
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/error_curve.h"
 #include "inverse/solve/fill_up_lights.h"
+#include "inverse/solve/fit_traced_columns.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/optimize_jointly.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr std::size_t kMany = 50000;  // receivers at most
+constexpr int kLeastPaths = 16;       // of each receiver, traced again …
+constexpr double kPathsAgain = 5e6;   // … of all together
 constexpr double kDarkest = 1e-20;    // candela: a channel that shines
 
 // Of each channel: by what its light grows. One that does not shine stays dark.
 Eigen::Array3d growth(const Eigen::Array3d& before, const Eigen::Array3d& after) {
   return (before > kDarkest).select(after / before.max(kDarkest), 0);
+}
+
+Column at_one_candela(const Column& brought, const LightEstimate& light) {
+  return brought * growth(light.intensity, Eigen::Array3d::Ones()).matrix().asDiagonal();
+}
+
+// Unity columns of some receivers, by other paths than those of a trace for verification.
+std::vector<Column> traced_again(const SolveProblem& problem, const SolveOptions& options,
+                                 const renderer::Control& control, const LightEstimates& lights,
+                                 const std::vector<std::size_t>& receivers) {
+  const int most = verification_samples(options, problem.target.receivers.size());
+  const int paths = std::min(most, std::max(kLeastPaths, int(kPathsAgain / double(receivers.size()))));
+  const auto samples = numerics::chosen_from(problem.target.receivers.samples, receivers);
+  const auto traced =
+      trace_illumination_by_light(problem.tracer, samples, point_lights(lights),
+                                  {paths, problem.bake.bounces, fresh_seed(options.seed, 7), false}, control);
+  std::vector<Column> unity;
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    unity.push_back(at_one_candela(column_of(traced.of_light[j]), lights[j]));
+  return unity;
 }
 
 // The trace becomes that of lights that grew so.
@@ -25,11 +52,27 @@ void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
   for (Vec3f& value : traced.all.value) value = max(value, Vec3f{});  // what was taken off may be more, by rounding
 }
 
+bool any_dark(const LightEstimates& lights) {
+  return std::any_of(lights.begin(), lights.end(), [](const auto& light) { return !(light.intensity > 0).any(); });
+}
+
+// As many lights: where they may share places the trace remains what it is.
+LightsByTrace with_none_dark(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
+                             LightsByTrace by_trace, StageClock& clock) {
+  const std::size_t count = by_trace.lights.size();
+  LightEstimates lit = may_share_places(problem) ? as_many_as_asked_for(by_trace.lights, count) : by_trace.lights;
+  if (lit.size() < count) return by_trace;
+  light_the_dark(lit);
+  if (!may_share_places(problem)) return trace_lights(problem, options, control, lit, clock);
+  by_trace.lights = std::move(lit);
+  return by_trace;
+}
+
 }  // namespace
 
-StageFigures verification_figures(const FreshTrace& traced) {
+StageFigures verification_figures(const FreshTrace& traced, const Target& target) {
   return {{"samples", double(traced.samples)},
-          {"relative_standard_error", relative_standard_error(traced.all).value_or(kNotKnown)}};
+          {"relative_standard_error", noise_of(traced, target).value_or(kNotKnown)}};
 }
 
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
@@ -37,7 +80,7 @@ LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& opti
   const renderer::Lights all = point_lights(lights);
   LightsByTrace by_trace{lights, first_part ? completed(problem, all, std::move(*first_part), options, control, clock)
                                             : trace_for_verification(problem, all, options, control, clock)};
-  clock.finish("verification", verification_figures(by_trace.traced));
+  clock.finish("verification", verification_figures(by_trace.traced, problem.target));
   return by_trace;
 }
 
@@ -51,13 +94,13 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   for (std::size_t j = 0; j < lights.size(); ++j) {
     const Column brought = column_of(numerics::chosen_from(by_trace.traced.of_light[j], draw.chosen));
     observations.wanted += brought;
-    unity.push_back(brought * growth(lights[j].intensity, Eigen::Array3d::Ones()).matrix().asDiagonal());
+    unity.push_back(at_one_candela(brought, lights[j]));
   }
   observations = weighted_by_objective(standing_for_all(observations), options.objective);
   observations.rules = problem.intensities;
-  const IntensityFit fit = fit_intensities(observations, unity);
+  const IntensityFit fit =
+      fit_traced_columns(observations, unity, traced_again(problem, options, control, lights, draw.chosen));
   for (std::size_t j = 0; j < lights.size(); ++j) by_trace.lights[j] = {lights[j].position, fit.intensity[j]};
-  if (options.exact_lights > 0) light_the_dark(by_trace.lights);
   std::vector<Eigen::Array3d> grown;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     grown.push_back(growth(lights[j].intensity, by_trace.lights[j].intensity));
@@ -66,6 +109,8 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   by_trace.settling_seconds = clock.finish(
       "intensities", {{"relative_l2", relative_error(observations, total_illumination(unity, fit.intensity,
                                                                                       observations.wanted.rows()))}});
+  if (options.exact_lights > 0 && any_dark(by_trace.lights))
+    return with_none_dark(problem, options, control, std::move(by_trace), clock);
   return by_trace;
 }
 

@@ -11,13 +11,13 @@ namespace chiaro::inverse {
 
 struct LightsByTrace {
   LightEstimates lights;
-  FreshTrace traced;                          // its sum is that of these lights
+  FreshTrace traced;                          // its sum is that of these lights; taken apart as they were traced
   std::optional<LightIntervals> intervals{};  // absent: they did not settle, or not all of them
   double settling_seconds = 0;                // without the traces
   bool went_astray = false;                   // as they settled: they were closer to the target before
 };
 
-StageFigures verification_figures(const FreshTrace& traced);
+StageFigures verification_figures(const FreshTrace& traced, const Target& target);
 
 // As they are. first_part: of these lights, where it is there already.
 LightsByTrace trace_lights(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,

@@ -70,9 +70,13 @@ double total_of(const std::map<Cell, Sums>& cells) {
 }
 
 void keep_clear_ones(const Target& target, std::map<Cell, Sums>& cells) {
-  double brightness = 0;
-  for (const Vec3f value : target.illumination) brightness += double(luminance(value));
-  const double lit = kLit * brightness / double(target.illumination.size());
+  double brightness = 0, receivers = 0;
+  for (std::size_t i = 0; i < target.illumination.size(); ++i) {
+    if (!(target.weight[i] > 0)) continue;
+    brightness += double(luminance(target.illumination[i]));
+    ++receivers;
+  }
+  const double lit = kLit * brightness / std::max(1.0, receivers);
   std::erase_if(cells, [&](const auto& cell) {
     const Sums& sums = cell.second;
     const double more = std::max(sums.wanted, sums.found);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/error_curve.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
@@ -131,18 +132,6 @@ LightEstimates refitted_over_many(const JointSearch& search, LightEstimates ligh
   return lights;
 }
 
-// A light that would do nothing is the half of another that stands where it stood.
-LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
-  while (!lights.empty() && lights.size() < count) {
-    const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
-      return a.intensity.sum() < b.intensity.sum();
-    });
-    brightest->intensity /= 2;
-    lights.push_back(*brightest);
-  }
-  return lights;
-}
-
 // Further lights make the error clearly less, though not as much less as they would have to.
 bool another_explains_more(const std::vector<LightSet>& curve, std::size_t count) {
   double least = std::numeric_limits<double>::infinity(), at_count = least;
@@ -153,25 +142,9 @@ bool another_explains_more(const std::vector<LightSet>& curve, std::size_t count
   return least < kClearlyLess * at_count && at_count < std::numeric_limits<double>::infinity();
 }
 
-// One light more never makes a set worse, however the search came by it.
-void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
-  for (std::size_t k = 1; k < curve.size(); ++k) {
-    const LightSet& fewer = curve[k - 1];
-    if (curve[k].relative_l2 <= fewer.relative_l2) continue;
-    const std::size_t count = curve[k].lights.size();
-    curve[k] = set_of(as_many_as_asked_for(light_estimates(fewer.lights), count), fewer.relative_l2);
-  }
-}
-
 }  // namespace
 
 LightEstimates all_of(const JointLights& found) { return joined(found.beside_surfaces, found.others); }
-
-LightSet set_of(const LightEstimates& lights, double relative_l2) {
-  LightSet set{{}, relative_l2};
-  for (const LightEstimate& light : lights) set.lights.push_back(point_light(light));
-  return set;
-}
 
 int most_lights(const SolveOptions& options) {
   return options.exact_lights > 0 ? options.exact_lights : options.max_lights;
@@ -180,6 +153,8 @@ int most_lights(const SolveOptions& options) {
 bool ties_lights_together(const SolveProblem& problem) {
   return problem.intensities.any() || problem.places.light_distance > 0;
 }
+
+bool may_share_places(const SolveProblem& problem) { return !(problem.places.light_distance > 0); }
 
 std::vector<LightEstimates> earlier_sets(const SolveOptions& options) {
   std::vector<LightEstimates> sets;
@@ -247,6 +222,8 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
 Optimum conclude(const JointSearch& search, const JointLights& found, StageClock& clock) {
   const SolveOptions& options = search.options;
   const bool explained = is_explained(found), tied = ties_lights_together(search.problem);
+  // Of what lights cannot produce each objective leaves something else, and lights settle by (3.6) alone.
+  const bool judged_otherwise = options.objective != Objective::kL2 && !explained;
   // Noise of the target, and of the transport that was searched by.
   const double far_from_target = std::max(kFarFromTarget, kFarNoise * search.searched.noise);
   const bool far = found.beside_surfaces.empty() && found.error > far_from_target;
@@ -261,9 +238,9 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   }
   if (refitted) clock.finish("intensities_over_many", {{"lights", double(at_last.lights.size())}});
   auto& [all, error_curve] = at_last;
-  const bool may_share_places = !(search.problem.places.light_distance > 0);
-  if (may_share_places) let_none_be_worse_than_fewer(error_curve);
-  const LightEstimates exactly = may_share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
+  const bool share_places = may_share_places(search.problem);
+  if (share_places) let_none_be_worse_than_fewer(error_curve);
+  const LightEstimates exactly = share_places ? as_many_as_asked_for(all, std::size_t(options.exact_lights)) : all;
   std::size_t held = found.beside_surfaces.size();
   LightEstimates lights =
       options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
@@ -272,14 +249,14 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
                                   : !explained && lights.size() == std::size_t(options.max_lights) ? kAsManyAsAllowed
                                   : another_explains_more(error_curve, lights.size())
                                       ? "further lights explain little more"
-                                      : "no further light explains more";
+                                      : kNoFurtherExplainsMore;
   return {std::move(lights),
           found.start,
           termination,
           found.cut,
           std::move(error_curve),
-          !found.out_of_time && (far || tied),
-          !found.out_of_time && !far && !tied,
+          !found.out_of_time && (far || tied || judged_otherwise),
+          !found.out_of_time && !far && !tied && !judged_otherwise,
           held};
 }
 

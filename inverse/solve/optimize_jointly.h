@@ -54,13 +54,14 @@ LightEstimates all_of(const JointLights& found);
 // They leave nothing but noise, or nearly so.
 bool is_explained(const JointLights& found);
 
-LightSet set_of(const LightEstimates& lights, double relative_l2);
-
 // At most, or exactly where so many are asked for.
 int most_lights(const SolveOptions& options);
 
 // Rules that speak of more than a light's place.
 bool ties_lights_together(const SolveProblem& problem);
+
+// No rule keeps lights apart.
+bool may_share_places(const SolveProblem& problem);
 
 // Sets of an earlier solve that serve: those of the number asked for, or no more than that.
 std::vector<LightEstimates> earlier_sets(const SolveOptions& options);

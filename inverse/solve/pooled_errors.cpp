@@ -29,7 +29,7 @@ std::vector<float> pooled_standard_errors(const Target& target, const std::vecto
     double sum = 0;
     std::size_t others = 0;
     for (std::size_t n = 0; n < count; ++n) {
-      if (near[n] == chosen[k]) continue;
+      if (near[n] == chosen[k] || !(target.weight[near[n]] > 0)) continue;
       sum += std::pow(double(target.standard_error[near[n]]), 2);
       ++others;
     }

@@ -4,6 +4,7 @@
 #include "inverse/solve/report_page.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -25,7 +26,8 @@ std::vector<Vec3f> importance_colors(const Importance& importance) {
 std::vector<Vec3f> difference_times_8(const Target& target, const std::vector<Vec3f>& illumination) {
   std::vector<Vec3f> difference;
   for (std::size_t i = 0; i < illumination.size(); ++i) {
-    difference.push_back(8 * abs(illumination[i] - target.illumination[i]));
+    const Vec3f times_8 = 8 * abs(illumination[i] - target.illumination[i]);
+    difference.push_back(min(times_8, Vec3f{renderer::kBrightest, renderer::kBrightest, renderer::kBrightest}));
   }
   return difference;
 }

@@ -250,7 +250,7 @@ class Settler {
   FreshTrace trace_first_part_of(const LightEstimates& lights) {
     FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_, clock_);
     if (!error_as_found_) error_as_found_ = error_of(traced);
-    clock_.finish("verification", verification_figures(traced));
+    clock_.finish("verification", verification_figures(traced, problem_.target));
     return traced;
   }
 
@@ -317,7 +317,7 @@ class Settler {
   LightIntervals only_needed(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free) const {
     if (options_.exact_lights == 0) return remove_needless(bench, carry_along, free);
     LightIntervals intervals = bench.intervals(free.indirect, free.now);
-    light_the_dark(free.now);
+    let_the_dark_share(free);
     return intervals;
   }
 

@@ -11,6 +11,7 @@
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/check_brightness.h"
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/error_curve.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
@@ -137,22 +138,6 @@ double brightest_of(const LightEstimates& lights) {
   return brightest;
 }
 
-// In place of the set of as many that the search knew, if any, unless that or a smaller one is as good.
-void set_in_curve(const LightEstimates& lights, double relative_l2, std::vector<LightSet>& curve) {
-  const auto as_good = [&](const LightSet& set) {
-    return set.lights.size() <= lights.size() && set.relative_l2 <= relative_l2;
-  };
-  if (std::any_of(curve.begin(), curve.end(), as_good)) return;
-  LightSet set = set_of(lights, relative_l2);
-  const auto at = std::find_if(curve.begin(), curve.end(),
-                               [&](const LightSet& other) { return other.lights.size() >= set.lights.size(); });
-  if (at != curve.end() && at->lights.size() == set.lights.size()) {
-    *at = std::move(set);
-  } else {
-    curve.insert(at, std::move(set));
-  }
-}
-
 // Where what they leave is no noise: the fewest whose error further ones do not lower clearly.
 LightEstimates at_knee(const Optimum& found, const SolveOptions& options) {
   double least = std::numeric_limits<double>::infinity();
@@ -181,6 +166,12 @@ LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, c
   }
   if (found.refits) return refit_by_trace(problem, options, control, found.lights, clock);
   return trace_lights(problem, options, control, found.lights, clock);
+}
+
+// Lights that settle may be fewer than the search came to.
+std::string termination_of(const Optimum& searched, std::size_t lights) {
+  const bool fewer = lights < searched.lights.size();
+  return fewer && searched.termination == kAsManyAsAllowed ? kNoFurtherExplainsMore : searched.termination;
 }
 
 // Nobody says where the region of the lights ends.
@@ -279,8 +270,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const double before = clock.total();
   Optimum optimum = searched->conclude(clock);
   result.optimal_seconds += clock.total() - before;
-  optimum.lights = filled_up(searched->response, searched->judged, std::move(optimum.lights),
-                             std::size_t(std::max(1, options.exact_lights)));
+  const auto wanted = std::size_t(std::max(1, options.exact_lights));
+  if (may_share_places(problem)) optimum.lights = as_many_as_asked_for(std::move(optimum.lights), wanted);
+  optimum.lights = filled_up(searched->response, searched->judged, std::move(optimum.lights), wanted);
   require_all_lights(problem, options, searched->response, optimum.lights);
   check_brightness(problem, brightest_of(optimum.lights));
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
@@ -289,10 +281,12 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   report_lights(problem, options, *searched, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
   result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
-  result.termination = by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : optimum.termination;
+  result.termination =
+      by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : termination_of(optimum, by_trace.lights.size());
   result.error_curve = optimum.error_curve;
-  if (by_trace.lights.size() > optimum.lights.size()) {
-    set_in_curve(by_trace.lights, result.relative_l2_cached, result.error_curve);
+  if (options.method == SolveMethod::kJoint) {
+    put_in_curve(set_of(by_trace.lights, result.relative_l2_cached), result.error_curve);
+    if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;
   result.target_noise = target_noise(problem.target);

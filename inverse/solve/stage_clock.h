@@ -13,6 +13,7 @@ inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();   
 inline constexpr const char* kTimeLimit = "time limit";                          // SolveResult::termination …
 inline constexpr const char* kAsManyAsAskedFor = "as many lights as asked for";  // … too
 inline constexpr const char* kAsManyAsAllowed = "as many lights as allowed";
+inline constexpr const char* kNoFurtherExplainsMore = "no further light explains more";
 
 using StageFigures = std::vector<std::pair<std::string, double>>;
 

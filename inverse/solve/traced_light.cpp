@@ -52,7 +52,7 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
 // Relative to the target.
 double noise_that_does_not_matter(const SolveProblem& problem, const FreshTrace& traced) {
   const Target& target = problem.target;
-  const double noise = relative_standard_error(traced.all).value_or(0), of_target = target_noise(target);
+  const double noise = noise_of(traced, target).value_or(0), of_target = target_noise(target);
   const double error = relative_l2(traced.all.value, target.illumination, target.weight);
   const double unexplained = std::sqrt(std::max(0.0, error * error - noise * noise - of_target * of_target));
   return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
@@ -72,6 +72,10 @@ std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::ve
   if (!has_fixed_light(problem)) return std::vector<Vec3f>(at.size());
   const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, 1), true};
   return trace_illumination(problem.tracer, at, problem.kept_lights, trace, control).value;
+}
+
+std::optional<double> noise_of(const FreshTrace& traced, const Target& target) {
+  return relative_standard_error(traced.all, target.weight);
 }
 
 int verification_samples(const SolveOptions& options, std::size_t receivers) {
@@ -94,7 +98,7 @@ FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights
   const int most = verification_samples(options, problem.target.receivers.size());
   const int needed = options.verification_samples > 0
                          ? most
-                         : renderer::samples_for_noise(first.samples, relative_standard_error(first.all).value_or(0),
+                         : renderer::samples_for_noise(first.samples, noise_of(first, problem.target).value_or(0),
                                                        noise_that_does_not_matter(problem, first), most);
   int more = needed - first.samples;
   if (options.verification_samples == 0 && more > samples_within(clock.seconds_left(), first)) {
@@ -114,7 +118,7 @@ FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::L
 
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {
   const Target& target = problem.target;
-  result.verification_noise = relative_standard_error(traced.all);
+  result.verification_noise = noise_of(traced, target);
   result.illumination = std::move(traced.all.value);
   result.relative_l2 = relative_l2(result.illumination, target.illumination, target.weight);
   if (!result.verification_noise) return;  // by one path nobody can tell what is noise

@@ -1,6 +1,8 @@
 #pragma once
 // What a solve traces by itself, beside the transport of a bake.
 
+#include <optional>
+
 #include "inverse/solve/solve.h"
 #include "inverse/solve/stage_clock.h"
 #include "renderer/trace/trace_illumination.h"
@@ -28,6 +30,9 @@ struct FreshTrace {
   double seconds = 0;                        // that they took
   bool cut_short = false;                    // there was no time for as many as it would have taken
 };
+
+// Relative to its light, as (3.6) weighs it; absent: one path does not tell.
+std::optional<double> noise_of(const FreshTrace& traced, const Target& target);
 
 // With as many samples as were asked for; or else with as many as it takes until its noise hardly adds to that of the
 // target, or to what the lights leave unexplained, and no more than verification_samples(), nor than clock has time

@@ -161,12 +161,13 @@ int samples_for_noise(int samples, double noise, double may_be, int most) {
   return int(std::min(needed, double(most)));
 }
 
-std::optional<double> relative_standard_error(const Illumination& illumination) {
+std::optional<double> relative_standard_error(const Illumination& illumination, std::span<const float> weight) {
   if (illumination.standard_error.empty() && !illumination.value.empty()) return std::nullopt;
   double error = 0, value = 0;
   for (std::size_t i = 0; i < illumination.value.size(); ++i) {
-    error += squared_norm(illumination.standard_error[i]);
-    value += squared_norm(illumination.value[i]);
+    const double w = weight.empty() ? 1 : double(weight[i]);
+    error += w * double(squared_norm(illumination.standard_error[i]));
+    value += w * double(squared_norm(illumination.value[i]));
   }
   return value > 0 ? std::sqrt(error / value) : 0;
 }

@@ -49,7 +49,8 @@ Illumination joined(Illumination first, int first_samples, const Illumination& s
 // How many samples it takes until `noise` of so many has come down to `may_be`: no fewer, and `most` at most.
 int samples_for_noise(int samples, double noise, double may_be, int most);
 
-// sqrt(Σ standard_error² / Σ value²): the relative L2 distance that noise alone is expected to give, if it is known.
-std::optional<double> relative_standard_error(const Illumination& illumination);
+// sqrt(Σ weight · standard_error² / Σ weight · value²): the relative L2 distance that noise alone is expected to give,
+// if it is known. weight: per point, ≥ 0; empty: all count the same.
+std::optional<double> relative_standard_error(const Illumination& illumination, std::span<const float> weight = {});
 
 }  // namespace chiaro::renderer

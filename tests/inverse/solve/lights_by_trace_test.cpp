@@ -41,6 +41,22 @@ TEST_F(RefitByTrace, GivesTheIntensitiesThatMadeTheTarget) {
   EXPECT_LT(relative_l2(refitted.traced.all.value, target.illumination, target.weight), 0.03);
 }
 
+// Least squares would take the noise of few paths for light of its own, and dim the lights.
+TEST_F(RefitByTrace, FewPathsDoNotDimTheLights) {
+  const LightEstimates known = known_lights(1);
+  const Target target = corner_.target(known, -1);
+  SolveProblem problem{corner_.tracer(), target, {}, {}, bake_settings(-1), {}};
+  problem.intensities.max_intensity = 100;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SolveOptions options;
+    options.seed = seed;
+    options.verification_samples = 4;
+    StageClock clock;
+    const LightEstimate found = refit_by_trace(problem, options, {}, known, clock).lights[0];
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.intensity[c] / known[0].intensity[c], 1, 0.03);
+  }
+}
+
 TEST_F(RefitByTrace, KeepsToTheRules) {
   const LightEstimates known = known_lights(2);
   IntensityRules rules;

@@ -48,6 +48,28 @@ TEST(NotReached, NamesAShadowThatNothingCasts) {
   EXPECT_EQ(places[0].node, receivers.parts[0].name);
 }
 
+// However bright what weighs nothing is.
+TEST(NotReached, WhatWeighsNothingHidesNoPlace) {
+  const PaintedCorner corner(0.1F);
+  Target target = corner.target(known_lights(2), 0);
+  const std::vector<Vec3f> illumination = target.illumination;
+  const Receivers::Part& painted = corner.receivers().parts[0];
+  const auto is_painted = [&](std::size_t i) {
+    return i >= painted.first_receiver && i < painted.first_receiver + painted.receiver_count;
+  };
+  const Vec3f middle = corner.receivers().positions[painted.first_receiver + painted.receiver_count / 2];
+  for (std::size_t i = 0; i < target.weight.size(); ++i) {
+    if (length(corner.receivers().positions[i] - middle) < 0.25F) target.illumination[i] = 0.1F * illumination[i];
+    if (!is_painted(i)) target.weight[i] = 0;
+  }
+  const std::size_t places = places_not_reached(target, illumination, 0.3).size();
+  ASSERT_EQ(places, 1U);
+  for (std::size_t i = 0; i < target.weight.size(); ++i) {
+    if (!is_painted(i)) target.illumination[i] = {1e5F, 1e5F, 1e5F};
+  }
+  EXPECT_EQ(places_not_reached(target, illumination, 0.3).size(), places);
+}
+
 TEST(NotReached, NoiseIsNoPlace) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(2), 0);

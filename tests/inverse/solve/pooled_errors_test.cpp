@@ -42,6 +42,15 @@ TEST(PooledStandardErrors, AreThoseOfTheSurfaceAboutAReceiver) {
   }
 }
 
+// Those that no picture shows say nothing, and have any value there.
+TEST(PooledStandardErrors, AreOfReceiversThatWeighSomething) {
+  Target target = floor_below_a_board(0.01, 1);
+  for (std::size_t i = 0; i < target.weight.size(); i += 2) target.weight[i] = 0;
+  const std::vector<float> before = pooled_standard_errors(target, {1, 41, 1001});
+  for (std::size_t i = 0; i < target.weight.size(); i += 2) target.standard_error[i] = 1000;
+  EXPECT_EQ(pooled_standard_errors(target, {1, 41, 1001}), before);
+}
+
 // Weights by what few batches tell favour receivers whose batches agree by chance.
 TEST(PooledStandardErrors, TellTheNoiseOfAWeightedMean) {
   const Target target = floor_below_a_board(1, 1);
