@@ -39,10 +39,15 @@ constexpr std::size_t kFinalists = 2;
 // Beyond that descents go on from one shadow edge to the next.
 constexpr JointRefinementOptions kSearching{.max_iterations = 15, .function_tolerance = 1e-3};
 constexpr JointRefinementOptions kToTheEnd{.max_iterations = 60, .function_tolerance = 1e-5};
-constexpr int kMostRounds = 3;           // of growth after the number of lights was told
-constexpr std::size_t kMostParents = 3;  // sets with one light less, descended to the end
-constexpr int kShakes = 8;               // further descents of a set that is to be refused …
-constexpr float kShaken = 0.03F;         // … from as far away at most, of the region's diagonal
+constexpr int kMostRounds = 3;                 // of growth after the number of lights was told
+constexpr std::size_t kMostParents = 3;        // sets with one light less, descended to the end
+constexpr double kSeen = 3, kSeenInCrowd = 1;  // standard errors of held-out residuals
+constexpr std::size_t kCrowd = 12;             // lights or more: some are exchanged …
+constexpr std::size_t kMostExchanged = 4;
+constexpr double kSurelyNoise = 1.25;  // … unless they leave so many times the noise, or less …
+constexpr double kClearlyLess = 0.99;  // … again and again, while that makes the error so much less
+constexpr int kShakes = 8;             // further descents of a set that is to be refused …
+constexpr float kShaken = 0.03F;       // … from as far away at most, of the region's diagonal
 
 class Search {
  public:
@@ -61,6 +66,11 @@ class Search {
       eliminate_lights();
       confirm_count();
       grow_again();
+      if (exchange_lights()) {
+        eliminate_lights();
+        confirm_count();
+        grow_again();
+      }
     }
     for (const LightEstimates& lights : options_.earlier) {
       if (best_.size() < 2 || !out_of_time()) consider({lights});
@@ -171,13 +181,15 @@ class Search {
   }
 
   // Where little more than noise is left a fit has no more to tell: from the knee on, by as many lights as held-out
-  // receivers clearly see.
+  // receivers clearly see. Of many lights each does little: one too many goes more easily as lights settle than one too
+  // few comes.
   std::size_t best_size() {
     std::size_t size = knee();
     if (!held_out_ || least_error() > kNearNoise * observations_.noise) return size;
     for (std::size_t larger = size + 1; larger < best_.size(); ++larger) {
       if (!(best_[larger].error < best_[size].error)) continue;
-      if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]))) size = larger;
+      const double clearly = size < kCrowd ? kSeen : kSeenInCrowd;
+      if (clearly_smaller(held_out_residuals(best_[size]), held_out_residuals(best_[larger]), clearly)) size = larger;
     }
     return size;
   }
@@ -246,6 +258,25 @@ class Search {
       if (exactly > 0 || best_size() == size) return;
       confirm_count();
     }
+  }
+
+  // Of many lights some stand where insertion happened to leave them: each of those that are missed least goes in turn,
+  // and what is proposed beside the others takes its place. True: that explained more.
+  bool exchange_lights() {
+    bool explains_more = false;
+    for (int round = 0; round < kMostRounds && !out_of_time(); ++round) {
+      const std::size_t size = options_.exact_lights > 0 ? std::size_t(options_.exact_lights) : best_size();
+      if (size < kCrowd || size >= best_.size() || best_[size].lights.empty()) break;
+      const double error = best_[size].error;
+      if (error <= kSurelyNoise * observations_.noise) break;
+      for (const LightEstimates& others : parents(best_[size].lights, kMostExchanged)) {
+        if (!out_of_time()) consider_one_more(others);
+      }
+      if (int(size) < most_searched()) consider_one_more(best_[size].lights);
+      if (!(best_[size].error < kClearlyLess * error) && best_size() <= size) break;
+      explains_more = true;
+    }
+    return explains_more;
   }
 
   // Descents of too few lights and of lights that hang on a shadow's edge look alike, until they start elsewhere.
