@@ -23,8 +23,11 @@ std::vector<Vector3d> positions_of(const LightEstimates& lights) {
 
 class FillingUp {
  public:
-  FillingUp(const LightResponse& response, const Observations& observations)
-      : response_(response), observations_(observations), candidates_(response.places_near_grid_lights()) {}
+  FillingUp(const LightResponse& response, const Observations& observations, const FillUpLimits& limits)
+      : response_(response),
+        observations_(observations),
+        limits_(limits),
+        candidates_(response.places_near_grid_lights()) {}
 
   LightEstimates fill_up(LightEstimates lights, std::size_t wanted) const {
     while (lights.size() < wanted && (add_beside(lights) || add_where_others_make_room(lights))) continue;
@@ -43,18 +46,20 @@ class FillingUp {
 
   // At the candidate that explains most of what is left, all others staying where they are.
   bool add_beside(LightEstimates& lights) const {
-    const Observations left = less(observations_, response_, lights);
-    const std::vector<Vector3d> positions = positions_of(lights);
-    std::optional<LightEstimate> best;
-    double most = -1;
+    LightEstimates fitting;
     for (const Vector3d& candidate : candidates_) {
-      if (!fits_in(positions, candidate)) continue;
-      LightEstimate light{candidate, Eigen::Array3d::Zero()};
-      const double gain = fit_intensity(left, evaluate_column(response_, light, Evaluation::kTracedVisibility), light);
-      if (gain > most) best = light, most = gain;
+      if (fits_in(positions_of(lights), candidate)) fitting.push_back({candidate, Eigen::Array3d::Zero()});
     }
-    if (best) lights.push_back(*best);
-    return best.has_value();
+    if (fitting.empty()) return false;
+    if (limits_.clock.out_of_time()) fitting.resize(1);
+    const Observations left = less(observations_, response_, lights);
+    std::vector<double> gain(fitting.size());
+    renderer::parallel_for(fitting.size(), "filling up", limits_.control.without_progress(), [&](std::size_t k) {
+      const Column column = evaluate_column(response_, fitting[k], Evaluation::kTracedVisibility);
+      gain[k] = fit_intensity(left, column, fitting[k]);
+    });
+    lights.push_back(fitting[std::size_t(std::max_element(gain.begin(), gain.end()) - gain.begin())]);
+    return true;
   }
 
   static double distance_to_any(const std::vector<Vector3d>& positions, const Vector3d& candidate) {
@@ -113,6 +118,7 @@ class FillingUp {
 
   const LightResponse& response_;
   const Observations& observations_;
+  const FillUpLimits& limits_;
   std::vector<Vector3d> candidates_;
 };
 
@@ -130,10 +136,10 @@ void light_the_dark(LightEstimates& lights) {
 }
 
 LightEstimates filled_up(const LightResponse& response, const Observations& observations, LightEstimates lights,
-                         std::size_t wanted) {
+                         std::size_t wanted, const FillUpLimits& limits) {
   std::erase_if(lights, [](const LightEstimate& light) { return !(light.intensity > 0).any(); });
   if (lights.size() >= wanted) return lights;
-  return FillingUp(response, observations).fill_up(std::move(lights), wanted);
+  return FillingUp(response, observations, limits).fill_up(std::move(lights), wanted);
 }
 
 }  // namespace chiaro::inverse

@@ -123,6 +123,15 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
                "fewer lights, a smaller distance between them, or a larger region"});
 }
 
+// As many as asked for, or one: further ones share a place with others, where they may. True: there are more.
+bool fill_up(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
+             const FillUpLimits& limits, LightEstimates& lights) {
+  const std::size_t before = lights.size(), wanted = std::size_t(std::max(1, options.exact_lights));
+  if (may_share_places(problem)) lights = as_many_as_asked_for(std::move(lights), wanted);
+  lights = filled_up(searched.response, searched.judged, std::move(lights), wanted, limits);
+  return lights.size() > before;
+}
+
 // As many as asked for, and one of them shines.
 void require_all_lights(const SolveProblem& problem, const SolveOptions& options, const LightResponse& response,
                         const LightEstimates& found) {
@@ -270,9 +279,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const double before = clock.total();
   Optimum optimum = searched->conclude(clock);
   result.optimal_seconds += clock.total() - before;
-  const auto wanted = std::size_t(std::max(1, options.exact_lights));
-  if (may_share_places(problem)) optimum.lights = as_many_as_asked_for(std::move(optimum.lights), wanted);
-  optimum.lights = filled_up(searched->response, searched->judged, std::move(optimum.lights), wanted);
+  if (fill_up(problem, options, *searched, {clock, control}, optimum.lights)) {
+    result.optimal_seconds += clock.finish("filling_up", {{"lights", double(optimum.lights.size())}});
+  }
   require_all_lights(problem, options, searched->response, optimum.lights);
   check_brightness(problem, brightest_of(optimum.lights));
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
