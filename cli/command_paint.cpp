@@ -40,7 +40,8 @@ inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& s
   }
   if (strokes.base == inverse::StrokeBase::kBlack)
     return black_target(choose_receivers(*stage.tracer, options.surface));
-  const renderer::Lights lights = choose_lights(stage, "", options.transport.environment, session);
+  const renderer::Lights lights =
+      choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   require_light(stage, lights, "lights in the scene, or strokes whose base is black");
   return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), lights,
                       trace_options(options.transport, options.common), session.control())
@@ -100,7 +101,7 @@ void print_summary(Session& session, const PaintCommand& options, const inverse:
 
 void warn_of_idle_options(const PaintCommand& options, Session& session) {
   session.warn(idle_options(*options.command, {"--camera", "--width", "--height"}, {"--picture"}));
-  session.warn(idle_options(*options.command, view_options(), {"--picture"}));
+  session.warn(idle_view_options(*options.command, {"--picture"}, {"--environment"}));
   if (options.from.empty()) return;
   for (const char* name : {"--on", "--max-edge"}) {
     if (was_given(*options.command, name)) {

@@ -81,9 +81,10 @@ int run_render(const RenderCommand& options) {
   session.require_outputs({options.output, preview_of(options)});
   require_color_choices(options.frame, options.preview);
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
-  const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
+  const renderer::Lights lights = choose_lights(
+      stage, options.lights, in_config(options.transport.environment, options.frame.view.config), session);
   warn_of_darkness(stage, lights, session);
-  session.warn(idle_options(*options.command, view_options(), {"--preview"}));
+  session.warn(idle_view_options(*options.command, {"--preview"}, {"--output-space", "--environment", "--lights"}));
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                              {trace_options(options.transport, options.common), session.control()});

@@ -51,7 +51,7 @@ void print_summary(Session& session, const SolveCommand& options, const WantedTa
 
 void warn_of_idle_options(const SolveCommand& options, Session& session) {
   const std::vector<std::string> pictures{"--target-image", "--target-lightmap"};
-  session.warn(idle_options(*options.command, view_options(), pictures));
+  session.warn(idle_view_options(*options.command, pictures, {"--environment"}));
   session.warn(idle_options(*options.command, {"--image-content", "--image-space", "--keep-white"}, pictures));
   session.warn(idle_options(*options.command, {"--lightmap-uv"}, {"--target-lightmap"}));
 }

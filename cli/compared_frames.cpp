@@ -25,22 +25,9 @@ struct LoadedFrame {
 
 std::string text_of_size(const Image& image) { return fmt::format("{} x {}", image.width, image.height); }
 
-bool has_attribute(const ImageFile& file, const std::string& name) {
-  return std::any_of(file.attributes.begin(), file.attributes.end(),
-                     [&](const auto& each) { return each.first == name; });
-}
-
-std::string named_space(const ImageFile& file) {
-  if (has_attribute(file, "chromaticities")) return "";
-  for (const auto& [name, value] : file.attributes) {
-    if (name == "chiaro:color_space" && std::holds_alternative<std::string>(value)) return std::get<std::string>(value);
-  }
-  return "";
-}
-
-Image rec709_of(const LoadedFrame& frame) {
+Image rec709_of(const LoadedFrame& frame, const ViewChoice& view) {
   Image image = renderer::make_image(frame.file.image.width, frame.file.image.height, {"R", "G", "B"});
-  const std::vector<renderer::Vec3f> colors = renderer::scene_linear_rec709(frame.file, frame.name);
+  const std::vector<renderer::Vec3f> colors = renderer::scene_linear_rec709(frame.file, frame.name, view.config);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = colors[i / 3][int(i % 3)];
   return image;
 }
@@ -48,13 +35,11 @@ Image rec709_of(const LoadedFrame& frame) {
 // Scene-linear files become Rec.709.
 void convert_primaries(LoadedFrame& frame, const ViewChoice& view, std::vector<std::string>& notes) {
   if (!frame.scene_linear()) return;
-  if (const std::string space = named_space(frame.file); !space.empty()) {
-    renderer::convert_to_rec709(frame.colors, renderer::find_ocio_config(view.config), space);
-    notes.push_back(fmt::format("{}: converted from {} to Rec.709", frame.name, space));
-  } else if (renderer::has_other_primaries(frame.file, frame.name)) {
-    frame.colors = rec709_of(frame);
-    notes.push_back(fmt::format("{}: converted from its chromaticities to Rec.709", frame.name));
-  }
+  const std::string space = renderer::named_space(frame.file);
+  if (space.empty() && !renderer::has_other_primaries(frame.file, frame.name)) return;
+  frame.colors = rec709_of(frame, view);
+  notes.push_back(
+      fmt::format("{}: converted from {} to Rec.709", frame.name, space.empty() ? "its chromaticities" : space));
 }
 
 LoadedFrame load_frame(const std::string& name, const ViewChoice& view, std::vector<std::string>& notes) {

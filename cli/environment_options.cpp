@@ -42,11 +42,16 @@ void add_environment_options(CLI::App& command, EnvironmentOptions& options) {
              {0, 1e15});
 }
 
+EnvironmentOptions in_config(EnvironmentOptions options, const std::optional<std::filesystem::path>& config) {
+  options.config = config;
+  return options;
+}
+
 renderer::Lights with_environment(renderer::Lights lights, const EnvironmentOptions& options,
                                   std::vector<std::string>& warnings) {
   if (!options.image.empty()) {
     std::erase_if(lights, renderer::is_environment);
-    lights.emplace_back(renderer::load_environment(options.image, warnings));
+    lights.emplace_back(renderer::load_environment(options.image, warnings, options.config));
   }
   apply(options, lights);
   return lights;

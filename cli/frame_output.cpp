@@ -7,6 +7,7 @@
 
 #include "cli/add_options.h"
 #include "cli/usage_error.h"
+#include "renderer/image/scene_linear.h"
 
 namespace chiaro::cli {
 namespace {
@@ -52,7 +53,7 @@ void add_chromaticities(renderer::Attributes& attributes, const FrameOptions& op
     attributes.emplace_back("chromaticities", kRec709Chromaticities);
     return;
   }
-  attributes.emplace_back("chiaro:color_space", options.output_space);
+  attributes.emplace_back(renderer::kColorSpaceAttribute, options.output_space);
   const auto config = renderer::find_ocio_config(options.view.config);
   if (const auto known = renderer::chromaticities_of(config, options.output_space)) {
     attributes.emplace_back("chromaticities", *known);

@@ -125,9 +125,10 @@ PaintedPicture load_painted_picture(const std::string& file, const PictureEncodi
     decode_space(image, encoding, picture);
     undo_exposure(encoding.view.view.exposure, picture);
   } else if (!stored.whole_numbers) {
-    picture.pixels = renderer::scene_linear_rec709(stored, file);
+    const std::string space = renderer::named_space(stored);
+    picture.pixels = renderer::scene_linear_rec709(stored, file, encoding.view.config);
     picture.white = {1, 1, 1};
-    picture.encoding = "scene-linear";
+    picture.encoding = space.empty() ? "scene-linear" : "in " + space;
     divide_by_alpha(picture);
     undo_exposure(encoding.view.view.exposure, picture);
   } else {

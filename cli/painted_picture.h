@@ -25,9 +25,9 @@ struct PaintedPicture {
   std::size_t white_pixels = 0;         // of display-referred pictures: at white in a channel
 };
 
-// Files of floats hold scene-linear values, of whole numbers what the encoding's display and view show, unless a space
-// is named. The exposure is undone. White pixels of a display-referred picture tell only that at least so much is
-// wanted: their weight is 0 unless kept. Error where the file has no colours.
+// Files of floats hold scene-linear values, in the space that they name, of whole numbers what the encoding's display
+// and view show, unless the encoding names a space. The exposure is undone. White pixels of a display-referred picture
+// tell only that at least so much is wanted: their weight is 0 unless kept. Error where the file has no colours.
 PaintedPicture load_painted_picture(const std::string& file, const PictureEncoding& encoding);
 
 // Luminance times alpha of each pixel as the file stores it, 0 to 1. Error where its size is another.

@@ -32,7 +32,8 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
 renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file,
                                const EnvironmentOptions& environment, Session& session) {
   std::vector<std::string> warnings;
-  renderer::Lights lights = light_file.empty() ? stage.lights : renderer::load_lights(light_file, warnings);
+  renderer::Lights lights =
+      light_file.empty() ? stage.lights : renderer::load_lights(light_file, warnings, environment.config);
   if (std::none_of(lights.begin(), lights.end(), renderer::is_environment)) {
     std::copy_if(stage.lights.begin(), stage.lights.end(), std::back_inserter(lights), renderer::is_environment);
   }

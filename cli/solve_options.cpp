@@ -67,7 +67,7 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
 
 // What stays lit: the environment, and with --keep-lights the scene's other lights.
 renderer::Lights lights_that_stay(const LoadedStage& stage, const SolveChoices& choices, Session& session) {
-  const EnvironmentOptions& environment = choices.transport.environment;
+  const EnvironmentOptions environment = in_config(choices.transport.environment, choices.target.encoding.view.config);
   return choices.constraints.keep_lights ? choose_lights(stage, "", environment, session)
                                          : environment_of(stage, environment, session);
 }

@@ -31,7 +31,15 @@ void add_view_options(CLI::App& command, ViewChoice& choice) {
              [&choice](const std::string& text) { parse_exposure(text, choice); });
 }
 
-std::vector<std::string> view_options() { return {"--ocio", "--display", "--view", "--look", "--exposure"}; }
+std::vector<std::string> idle_view_options(const CLI::App& command, const std::vector<std::string>& shown_by,
+                                           const std::vector<std::string>& converted_by) {
+  std::vector<std::string> config_users = shown_by;
+  config_users.insert(config_users.end(), converted_by.begin(), converted_by.end());
+  std::vector<std::string> warnings = idle_options(command, {"--ocio"}, config_users);
+  const auto views = idle_options(command, {"--display", "--view", "--look", "--exposure"}, shown_by);
+  warnings.insert(warnings.end(), views.begin(), views.end());
+  return warnings;
+}
 
 void require_view(const ViewChoice& choice) { displayed(renderer::make_image(1, 1, {"R", "G", "B"}), choice); }
 

@@ -24,8 +24,10 @@ struct ViewChoice {
 
 void add_view_options(CLI::App& command, ViewChoice& choice);
 
-// Their names.
-std::vector<std::string> view_options();
+// A warning for each of them that was given and does nothing: none of `shown_by` was given, by which the view shows
+// something, nor for --ocio one of `converted_by`, which need its colour spaces alone.
+std::vector<std::string> idle_view_options(const CLI::App& command, const std::vector<std::string>& shown_by,
+                                           const std::vector<std::string>& converted_by);
 
 // Error where the config, the display or the view does not exist: asked before the long work starts.
 void require_view(const ViewChoice& choice);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "renderer/core/error.h"
+#include "renderer/image/color_management.h"
 #include "renderer/image/known_primaries.h"
 #include "renderer/image/srgb_curve.h"
 
@@ -55,9 +56,41 @@ bool is_identity(const Rec709FromSpace& m) {
   return true;
 }
 
+Image converted_from(const std::string& space, const ImageFile& file, const std::string& name,
+                     const std::optional<std::filesystem::path>& config) {
+  Image colors = stored_colors(file.image, name);
+  try {
+    convert_to_rec709(colors, find_ocio_config(config), space);
+  } catch (const Error& error) {
+    throw Error({name, kColorSpaceAttribute,
+                 fmt::format("is \"{}\", but {}: {}", space.substr(0, 200), error.parts().file, error.parts().problem),
+                 "the OpenColorIO config that it was written with, by --ocio or $OCIO"});
+  }
+  return colors;
+}
+
+std::vector<Vec3f> vectors_of(const Image& rgb) {
+  std::vector<Vec3f> colors(rgb.pixels.size() / 3);
+  for (std::size_t i = 0; i < rgb.pixels.size(); ++i) colors[i / 3][int(i % 3)] = rgb.pixels[i];
+  return colors;
+}
+
 }  // namespace
 
-std::vector<Vec3f> scene_linear_rec709(const ImageFile& file, const std::string& name) {
+std::string named_space(const ImageFile& image) {
+  if (image.whole_numbers || chromaticities_attribute(image.attributes) != nullptr) return "";
+  for (const auto& [name, value] : image.attributes) {
+    const auto* space = std::get_if<std::string>(&value);
+    if (name == kColorSpaceAttribute && space != nullptr) return *space;
+  }
+  return "";
+}
+
+std::vector<Vec3f> scene_linear_rec709(const ImageFile& file, const std::string& name,
+                                       const std::optional<std::filesystem::path>& config) {
+  if (const std::string space = named_space(file); !space.empty()) {
+    return vectors_of(converted_from(space, file, name, config));
+  }
   const std::array<int, 3> channels = color_channels(file.image, name);
   const bool converted = chromaticities_attribute(file.attributes) != nullptr;
   const Rec709FromSpace matrix = rec709_from_file(file, name);

@@ -1,6 +1,8 @@
 #pragma once
 // Colours of an image file as scene-linear Rec.709.
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +11,19 @@
 
 namespace chiaro::renderer {
 
+// The attribute by which frames tell their colour space where `chromaticities` cannot.
+constexpr const char* kColorSpaceAttribute = "chiaro:color_space";
+
+// The space of an OpenColorIO config that this attribute of a file of floats names; empty: none, or `chromaticities`
+// tell.
+std::string named_space(const ImageFile& image);
+
 // The pixels of the channels R, G and B, or of the one grey channel, rows from the top. Values on the sRGB curve are
-// made linear; primaries are those of the attribute `chromaticities`, else Rec.709's. Error, naming `file`, where there
-// are no such channels or no such primaries.
-std::vector<Vec3f> scene_linear_rec709(const ImageFile& image, const std::string& file);
+// made linear; primaries are those of the attribute `chromaticities`, else of the named space in the config (as
+// find_ocio_config takes it), else Rec.709's. Error, naming `file`, where there are no such channels, primaries or
+// space.
+std::vector<Vec3f> scene_linear_rec709(const ImageFile& image, const std::string& file,
+                                       const std::optional<std::filesystem::path>& config = std::nullopt);
 
 // The same channels as they are stored, as an image of R, G, B.
 Image stored_colors(const Image& image, const std::string& file);

@@ -49,11 +49,12 @@ std::size_t mend_pixels(EnvironmentMap& map) {
   return count;
 }
 
-EnvironmentLight load_environment(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+EnvironmentLight load_environment(const std::filesystem::path& path, std::vector<std::string>& warnings,
+                                  const std::optional<std::filesystem::path>& config) {
   const std::string file = path.string();
   check_size(load_image_header(path).image, file);
   const ImageFile image = load_image(path);
-  EnvironmentMap map{image.image.width, image.image.height, scene_linear_rec709(image, file)};
+  EnvironmentMap map{image.image.width, image.image.height, scene_linear_rec709(image, file, config)};
   if (const std::size_t count = mend_pixels(map); count > 0) {
     warnings.push_back(
         fmt::format("{}: {} pixels are negative, not finite or too bright; they are mended", file, count));

@@ -27,11 +27,14 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
+using OcioConfig = std::optional<std::filesystem::path>;
+
 // One light of a JSON file, with what messages about it need.
 struct Entry {
   const json& fields;
   std::string file;
   std::string place;  // "lights[2]"
+  const OcioConfig& config;
 };
 
 [[noreturn]] void fail(const Entry& entry, const char* field, const std::string& problem, const std::string& expected) {
@@ -131,7 +134,7 @@ float read_factor(const Entry& entry, const char* field, float low, float high, 
 }
 
 EnvironmentLight read_environment_light(const Entry& entry, std::vector<std::string>& warnings) {
-  EnvironmentLight light = load_environment(read_image_path(entry), warnings);
+  EnvironmentLight light = load_environment(read_image_path(entry), warnings, entry.config);
   light.name = read_string(entry, "name", light.name);
   if (entry.fields.contains("rotation")) {
     light.rotation = read_factor(entry, "rotation", -2 * kPi, 2 * kPi, "-2π to 2π radians");
@@ -180,7 +183,8 @@ json parse(const std::string& text, const std::string& file) {
   }
 }
 
-Lights read_json_lights(const json& root, const std::string& file, std::vector<std::string>& warnings) {
+Lights read_json_lights(const json& root, const std::string& file, const OcioConfig& config,
+                        std::vector<std::string>& warnings) {
   const bool missing = !root.is_object() || !root.contains("lights");
   if (missing || !root["lights"].is_array()) {
     throw Error({file, "lights", missing ? "is missing" : "is not an array", "a light file, {\"lights\":[…]}"});
@@ -188,7 +192,7 @@ Lights read_json_lights(const json& root, const std::string& file, std::vector<s
   Lights lights;
   for (const json& fields : root["lights"]) {
     const std::size_t index = lights.size();
-    const Entry entry{fields, file, fmt::format("lights[{}]", index)};
+    const Entry entry{fields, file, fmt::format("lights[{}]", index), config};
     lights.push_back(read_light(entry, fmt::format("light {}", index), warnings));
   }
   if (const std::set<std::string> unknown = unknown_fields(root["lights"]); !unknown.empty()) {
@@ -259,12 +263,12 @@ std::string dumped(const Light& light, const std::filesystem::path& path) {
 
 }  // namespace
 
-Lights load_lights(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+Lights load_lights(const std::filesystem::path& path, std::vector<std::string>& warnings, const OcioConfig& config) {
   const std::string bytes = read_file(path);
   const bool binary = is_glb(bytes);
   const json root = binary ? json() : parse(bytes, path.string());
   const bool gltf = binary || (root.is_object() && root.contains("asset"));
-  Lights lights = gltf ? read_gltf_lights(path, warnings) : read_json_lights(root, path.string(), warnings);
+  Lights lights = gltf ? read_gltf_lights(path, warnings) : read_json_lights(root, path.string(), config, warnings);
   if (lights.empty()) throw Error({path.string(), "lights", "there are none", "at least one light"});
   return lights;
 }

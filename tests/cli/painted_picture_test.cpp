@@ -16,9 +16,10 @@ using renderer::Vec3f;
 
 class PaintedPictureTest : public testing::Test {
  protected:
-  std::string save(const std::string& name, const Image& image, renderer::PixelType type) const {
+  std::string save(const std::string& name, const Image& image, renderer::PixelType type,
+                   const renderer::Attributes& attributes = {}) const {
     const auto path = folder_.path() / name;
-    renderer::save_image(image, path, type);
+    renderer::save_image(image, path, type, attributes);
     return path.string();
   }
   static PictureEncoding encoding(float exposure = 0) {
@@ -89,6 +90,17 @@ TEST_F(PaintedPictureTest, ANamedSpaceIsConvertedFrom) {
   PictureEncoding encoded = encoding();
   encoded.space = "sRGB - Texture";
   EXPECT_NEAR(load_painted_picture(file, encoded).pixels[0].x, 0.21404F, 1e-4F);
+}
+
+TEST_F(PaintedPictureTest, TheSpaceThatAnExrNamesIsConvertedFrom) {
+  const std::string file = save("a.exr", picture_of({"R", "G", "B"}, {0.9505F, 1, 1.0888F}),
+                                renderer::PixelType::kFloat, {{"chiaro:color_space", "CIE-XYZ-D65"}});
+  PictureEncoding encoded = encoding();
+  const PaintedPicture picture = load_painted_picture(file, encoded);
+  EXPECT_EQ(picture.encoding, "in CIE-XYZ-D65");
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixels[0][c], 1, 1e-3F);
+  encoded.space = "Linear Rec.709 (sRGB)";
+  EXPECT_NEAR(load_painted_picture(file, encoded).pixels[0].x, 0.9505F, 1e-4F);
 }
 
 TEST_F(PaintedPictureTest, WithoutColoursIsRefused) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/error.h"
+#include "tests/support/error_of.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -28,6 +29,34 @@ TEST(SceneLinear, OtherPrimariesAreKnownAndConverted) {
   EXPECT_NEAR(found.x, -0.5876F, 1e-3F);
   EXPECT_NEAR(found.y, 1.1329F, 1e-3F);
   EXPECT_NEAR(found.z, -0.1006F, 1e-3F);
+}
+
+const std::string kConfig = CHIARO_SOURCE_DIR "/scenes/color/config.ocio";
+
+// The white of D65 (IEC 61966-2-1) is that of Rec.709.
+TEST(SceneLinear, TheNamedSpaceIsConverted) {
+  const Image white{1, 1, {"A", "B", "G", "R"}, {1, 1.0888F, 1, 0.9505F}};
+  const ImageFile file = file_of(white, {{kColorSpaceAttribute, "CIE-XYZ-D65"}});
+  EXPECT_EQ(named_space(file), "CIE-XYZ-D65");
+  const Vec3f found = scene_linear_rec709(file, "x.exr", kConfig).front();
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], 1, 1e-3F);
+}
+
+TEST(SceneLinear, ChromaticitiesAndWholeNumbersAreStrongerThanTheNamedSpace) {
+  const Image green{1, 1, {"R", "G", "B"}, {0, 1, 0}};
+  ImageFile file = file_of(green, {{kColorSpaceAttribute, "CIE-XYZ-D65"}, {"chromaticities", kRec709}});
+  EXPECT_EQ(named_space(file), "");
+  EXPECT_NEAR(scene_linear_rec709(file, "x.exr", kConfig).front().y, 1, 1e-3F);
+  file.attributes.pop_back();
+  file.whole_numbers = true;
+  EXPECT_EQ(named_space(file), "");
+}
+
+TEST(SceneLinear, ASpaceThatIsNotKnownIsRefused) {
+  const ImageFile file = file_of({1, 1, {"R", "G", "B"}, {0, 1, 0}}, {{kColorSpaceAttribute, "Arri"}});
+  const std::string missing = test::error_of([&] { scene_linear_rec709(file, "x.exr", kConfig); });
+  EXPECT_TRUE(missing.starts_with("x.exr: chiaro:color_space: is \"Arri\", but ")) << missing;
+  EXPECT_NE(missing.find("--ocio or $OCIO"), std::string::npos) << missing;
 }
 
 TEST(SceneLinear, StoredColorsAreRedGreenAndBlue) {

@@ -67,6 +67,19 @@ TEST(EnvironmentFile, ConvertsFromThePrimariesThatTheFileNames) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST(EnvironmentFile, ConvertsFromTheSpaceThatTheFileNames) {
+  const TemporaryFolder folder;
+  Image image = grey_image(4, 2, 1);
+  image.at(0, 0)[0] = 0.9505F;  // the white of D65
+  image.at(0, 0)[2] = 1.0888F;
+  save_image(image, folder / "sky.exr", PixelType::kFloat, {{"chiaro:color_space", "CIE-XYZ-D65"}});
+  const auto path = folder.write("lights.json", R"({"lights":[{"type":"environment","image":"sky.exr"}]})");
+  std::vector<std::string> warnings;
+  const Lights lights = load_lights(path, warnings, CHIARO_SOURCE_DIR "/scenes/color/config.ocio");
+  const Vec3f white = std::get<EnvironmentLight>(lights.front()).map->at(0, 0);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(white[c], 1, 1e-3);
+}
+
 TEST(EnvironmentFile, MendsPixelsThatAreNoLight) {
   const TemporaryFolder folder;
   Image image = grey_image(4, 2, 1);
