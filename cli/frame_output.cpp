@@ -114,8 +114,7 @@ void require_color_choices(const FrameOptions& options, bool preview) {
   }
   if (preview) require_view(options.view);
   if (options.output_space.empty()) return;
-  Image pixel = renderer::make_image(1, 1, {"R", "G", "B"});
-  convert_to_output_space(pixel, options);
+  renderer::require_linear_space(renderer::find_ocio_config(options.view.config), options.output_space);
 }
 
 renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,

@@ -39,8 +39,8 @@ struct FrameRun {
 // samples: the name of the option that says how many there are.
 void add_frame_options(CLI::App& command, FrameOptions& options, const std::string& samples);
 
-// Error where the colour spaces, displays or views asked for do not exist. UsageError where two options expose the
-// preview.
+// Error where the colour spaces, displays or views asked for do not exist, or the space is not linear. UsageError where
+// two options expose the preview.
 void require_color_choices(const FrameOptions& options, bool preview);
 
 // The frame as the options want it.

@@ -10,6 +10,7 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
+#include "renderer/core/vec.h"
 #include "renderer/image/known_primaries.h"
 
 namespace chiaro::renderer {
@@ -214,6 +215,52 @@ std::vector<Triple> color_triples(const Image& image, const std::vector<std::str
   return triples;
 }
 
+// Red, green and blue, and black, greys and colours from dim to as bright as frames hold.
+std::vector<float> colors_to_probe() {
+  std::vector<float> rgb{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  for (const float gain : {1e-3F, 0.1F, 1.0F, 30.0F, 6e4F}) {
+    for (const Vec3f color : {Vec3f{1, 1, 1}, {1, 0.1F, 0.02F}, {0.3F, 1, 0}, {0, 0.2F, 1}, {0.5F, 0, 0.5F}}) {
+      for (int c = 0; c < 3; ++c) rgb.push_back(gain * color[c]);
+    }
+  }
+  return rgb;
+}
+
+// f(0) = 0, f(a + b) = f(a) + f(b) and f(k a) = k f(a): each |f(r, g, b) − (r f(red) + g f(green) + b f(blue))| ≤
+// (1e-3 max(r, g, b) + 1e-6) max |f(primary)|.
+bool is_linear(const ocio::CPUProcessor& processor) {
+  const std::vector<float> from = colors_to_probe();
+  std::vector<float> to = from;
+  apply(processor, to);
+  const auto [least, most] = std::minmax_element(to.begin(), to.begin() + 9);
+  const float largest = std::max(-*least, *most);
+  for (std::size_t i = 9; i < to.size(); ++i) {
+    const float* color = &from[i / 3 * 3];
+    const float sum = color[0] * to[i % 3] + color[1] * to[3 + i % 3] + color[2] * to[6 + i % 3];
+    const float brightest = std::max({color[0], color[1], color[2]});
+    if (!(std::abs(to[i] - sum) <= (1e-3F * brightest + 1e-6F) * largest)) return false;
+  }
+  return true;
+}
+
+bool is_linear_space(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path,
+                     const std::string& space) {
+  return is_linear(*cpu_processor(config, space_transform(config, path, space), path));
+}
+
+// Without those that cannot be converted to.
+std::vector<std::string> linear_spaces(const ocio::ConstConfigRcPtr& config, const std::filesystem::path& path) {
+  std::vector<std::string> spaces = color_spaces(config);
+  std::erase_if(spaces, [&](const std::string& space) {
+    try {
+      return !is_linear_space(config, path, space);
+    } catch (const Error&) {
+      return true;
+    }
+  });
+  return spaces;
+}
+
 Image rgb_of(const Image& image) {
   if (image.channel_count() >= 3) return {image.width, image.height, {"R", "G", "B"}, gather(image, {0, 1, 2})};
   throw Error({"image", "", fmt::format("has {} channels", image.channel_count()), "at least R, G, B"});
@@ -310,6 +357,14 @@ void convert_from_rec709(Image& image, const std::filesystem::path& config, cons
     apply(*processor, rgb);
     scatter(rgb, triple, image);
   }
+}
+
+void require_linear_space(const std::filesystem::path& config, const std::string& space) {
+  const ocio::ConstConfigRcPtr loaded = load_config(config);
+  check_space(loaded, space, config);
+  if (is_linear_space(loaded, config, space)) return;
+  throw Error({config.string(), "colour space", fmt::format("\"{}\" is not scene-linear", space),
+               fmt::format("one of {}", fmt::join(linear_spaces(loaded, config), ", "))});
 }
 
 void convert_to_rec709(Image& image, const std::filesystem::path& config, const std::string& space) {

@@ -36,6 +36,10 @@ Image to_rec709_from_display_view(const Image& image, const std::filesystem::pat
 void convert_from_rec709(Image& image, const std::filesystem::path& config, const std::string& space,
                          const std::vector<std::string>& color_layers);
 
+// Error, naming the spaces that do, where colours of this space (or role) do not add up as light does: where its values
+// are no linear function of scene-linear Rec.709.
+void require_linear_space(const std::filesystem::path& config, const std::string& space);
+
 // The first three channels from a named space (or role) of the config to scene-linear Rec.709, in place. Error, naming
 // the choices, where the config has no such space.
 void convert_to_rec709(Image& image, const std::filesystem::path& config, const std::string& space);

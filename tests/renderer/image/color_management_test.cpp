@@ -215,6 +215,31 @@ TEST(ColorManagement, ANamedSpaceBecomesRec709) {
   EXPECT_NE(error_of([&] { convert_to_rec709(grey, config, "gamma2"); }), "");
 }
 
+TEST(ColorManagement, SpacesInWhichLightAddsUpAreToldByTheirValues) {
+  const TemporaryFolder folder;
+  const auto config = folder.write("config.ocio", kConfig);
+  for (const char* linear : {"lin_rec709", "acescg", "odd", "rendering"}) {
+    EXPECT_NO_THROW(renderer::require_linear_space(config, linear)) << linear;
+  }
+  const std::string gamma = error_of([&] { renderer::require_linear_space(config, "gamma2"); });
+  EXPECT_NE(gamma.find("\"gamma2\" is not scene-linear (expected one of lin_rec709, acescg, odd)"), std::string::npos)
+      << gamma;
+  EXPECT_NE(error_of([&] { renderer::require_linear_space(config, "nowhere"); }).find("gamma2"), std::string::npos);
+  const auto aces = folder.write("aces.ocio", kAcesConfig);
+  EXPECT_NE(error_of([&] { renderer::require_linear_space(aces, "clipped"); }).find("exchange, work, grey, data"),
+            std::string::npos);
+}
+
+TEST(ColorManagement, OurLinearSpacesAreLinear) {
+  const std::filesystem::path config = CHIARO_SOURCE_DIR "/scenes/color/config.ocio";
+  for (const char* linear : {"ACES2065-1", "ACEScg", "CIE-XYZ-D65", "Linear Rec.709 (sRGB)", "scene_linear", "Raw"}) {
+    EXPECT_NO_THROW(renderer::require_linear_space(config, linear)) << linear;
+  }
+  for (const char* other : {"ACEScct", "sRGB - Texture", "sRGB - Display", "Rec.1886 Rec.709 - Display"}) {
+    EXPECT_NE(error_of([&] { renderer::require_linear_space(config, other); }), "") << other;
+  }
+}
+
 TEST(ColorManagement, DataIsNeverConverted) {
   const TemporaryFolder folder;
   const auto config = folder.write("config.ocio", kAcesConfig);
