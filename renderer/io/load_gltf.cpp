@@ -14,6 +14,7 @@
 #include "renderer/io/gltf_nodes.h"
 #include "renderer/io/gltf_variants.h"
 #include "renderer/io/mesh_repair.h"
+#include "renderer/io/missing_coordinates.h"
 #include "renderer/io/node_meshes.h"
 
 namespace chiaro::renderer {
@@ -111,6 +112,8 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
     left_out += add_instances(document, nodes[n], meshes.of_node[n], scene);
   check_size(document, scene);
   warn_of_repairs(meshes, left_out, loaded.warnings);
+  const std::vector<std::string> missing = warnings_of_missing_coordinates(scene);
+  loaded.warnings.insert(loaded.warnings.end(), missing.begin(), missing.end());
   if (scene.materials.empty()) scene.materials.push_back(default_material());
 
   scene.cameras = read_cameras(document, nodes);

@@ -363,6 +363,34 @@ TEST(GltfMaterials, FactorsTexturesAndAlphaComeThrough) {
   EXPECT_EQ(texture.wrap_v, renderer::Wrap::kMirroredRepeat);
 }
 
+TEST(GltfMaterials, TexturesWhoseCoordinatesAMeshHasNotAreTold) {
+  const TemporaryFolder folder;
+  save_image(renderer::make_image(1, 1, {"R", "G", "B"}), folder / "black.png", renderer::PixelType::kUint8);
+  GltfBuilder gltf = triangle_scene();
+  gltf.primitive()["attributes"]["TEXCOORD_0"] = gltf.add_accessor<float>({0, 0, 1, 0, 0, 1}, 2, kFloat);
+  gltf.root["meshes"][0]["name"] = "wall";
+  gltf.root["images"] = ordered_json::array({{{"uri", "black.png"}}});
+  gltf.root["textures"] = ordered_json::array({{{"source", 0}}});
+  gltf.root["materials"] = ordered_json::array(
+      {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+        {"emissiveFactor", {1, 1, 1}},
+        {"emissiveTexture", {{"index", 0}, {"texCoord", 3}}},
+        {"extensions",
+         {{"KHR_materials_transmission",
+           {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}, {"texCoord", 1}}}}}}}}});
+  gltf.primitive()["material"] = 0;
+  gltf.add_node({{"mesh", 0}, {"scale", {1, 1, 0}}});  // a mesh of its own in the scene, of the same material
+  const std::vector<std::string> expected{
+      "materials[0].emissiveTexture: mesh \"wall\" has no TEXCOORD_3; the texture is not read there",
+      "materials[0].extensions.KHR_materials_transmission.transmissionTexture: mesh \"wall\" has no TEXCOORD_1; the "
+      "texture is not read there"};
+  std::vector<std::string> told = load_gltf(folder.write("scene.glb", gltf.glb())).warnings;
+  std::erase_if(told, [](const std::string& line) { return line.find("TEXCOORD") == std::string::npos; });
+  EXPECT_EQ(told, expected);
+  gltf.primitive()["attributes"].erase("TEXCOORD_0");
+  EXPECT_TRUE(mentions(load_gltf(folder.write("scene.glb", gltf.glb())).warnings, "baseColorTexture"));
+}
+
 TEST(GltfBuffers, DataUrisAndFilesWithSpacesAreRead) {
   const TemporaryFolder folder;
   const GltfBuilder gltf = triangle_scene();
