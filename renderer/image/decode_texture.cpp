@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstring>
+#include <limits>
 #include <memory>
 
 #include <OpenImageIO/filesystem.h>
@@ -65,23 +67,26 @@ std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, std::size_t encod
 }
 
 // One channel is grey, two are grey and alpha, three are RGB.
-std::vector<std::uint8_t> rgba_of(const std::vector<std::uint8_t>& texels, int channels) {
+template <class Channel>
+std::vector<Channel> four_channels_of(const std::vector<Channel>& texels, int channels) {
   const std::size_t count = texels.size() / channels;
-  std::vector<std::uint8_t> rgba(4 * count);
+  std::vector<Channel> rgba(4 * count);
   const int g = channels >= 3 ? 1 : 0, b = channels >= 3 ? 2 : 0, a = channels == 2 ? 1 : 3;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* texel = &texels[i * channels];
-    const std::uint8_t values[4] = {texel[0], texel[g], texel[b], a < channels ? texel[a] : std::uint8_t{255}};
+    const Channel* texel = &texels[i * channels];
+    const Channel opaque = std::numeric_limits<Channel>::max();
+    const Channel values[4] = {texel[0], texel[g], texel[b], a < channels ? texel[a] : opaque};
     std::copy(values, values + 4, &rgba[4 * i]);
   }
   return rgba;
 }
 
-Texture texture_of(std::vector<std::uint8_t> texels, int width, int height, int channels) {
+template <class Channel>
+Texture texture_of(std::vector<Channel> texels, int width, int height, int channels) {
   Texture texture;
   texture.width = width;
   texture.height = height;
-  texture.rgba = channels == 4 ? std::move(texels) : rgba_of(texels, channels);
+  rgba_of<Channel>(texture) = channels == 4 ? std::move(texels) : four_channels_of(texels, channels);
   return texture;
 }
 
@@ -91,9 +96,22 @@ Texture decoded_texture(OIIO::ImageInput& input, std::size_t encoded_bytes, cons
   return texture_of(std::move(texels), spec.width, spec.height, spec.nchannels);
 }
 
-std::vector<std::uint8_t> narrowed(const std::vector<std::uint8_t>& samples) {
-  std::vector<std::uint8_t> bytes(samples.size() / 2);
-  OIIO::convert_pixel_values(OIIO::TypeUInt16, samples.data(), OIIO::TypeUInt8, bytes.data(), int(bytes.size()));
+// Of two bytes each.
+std::vector<std::uint16_t> wide_samples(const std::vector<std::uint8_t>& samples) {
+  std::vector<std::uint16_t> wide(samples.size() / 2);
+  std::memcpy(wide.data(), samples.data(), samples.size());
+  return wide;
+}
+
+// Samples of 8 bits that were written as 16: 257 v / 65535 = v / 255.
+bool hold_bytes(const std::vector<std::uint16_t>& samples) {
+  return std::all_of(samples.begin(), samples.end(), [](std::uint16_t sample) { return sample % 257 == 0; });
+}
+
+std::vector<std::uint8_t> narrowed(const std::vector<std::uint16_t>& samples) {
+  std::vector<std::uint8_t> bytes(samples.size());
+  std::transform(samples.begin(), samples.end(), bytes.begin(),
+                 [](std::uint16_t sample) { return std::uint8_t(sample / 257); });
   return bytes;
 }
 
@@ -101,8 +119,12 @@ Texture decode_samples_texture(std::string_view encoded, const std::string& labe
   const SamplesHeader header = read_samples_header(encoded, label);
   check_size({header.width, header.height, 1, header.channels, header.bytes()}, encoded.size(), label);
   std::vector<std::uint8_t> samples = decode_samples(encoded, label);
-  if (header.bytes_per_sample == 2) samples = narrowed(samples);
-  return texture_of(std::move(samples), header.width, header.height, header.channels);
+  const auto texture = [&](auto texels) {
+    return texture_of(std::move(texels), header.width, header.height, header.channels);
+  };
+  if (header.bytes_per_sample == 1) return texture(std::move(samples));
+  std::vector<std::uint16_t> wide = wide_samples(samples);
+  return hold_bytes(wide) ? texture(narrowed(wide)) : texture(std::move(wide));
 }
 
 // Its reader wants a file.

@@ -48,7 +48,8 @@ void save_image(const Image& image, const std::filesystem::path& path, PixelType
 // Pixels of which save_image holds a channel at the largest half, as they are more.
 std::size_t pixels_beyond_half(const Image& image, const ChannelTypes& types);
 
-// Decodes an encoded texture (PNG, JPEG, WebP …) in memory to RGBA8; `label` names it in errors.
+// Decodes an encoded texture (PNG, JPEG, WebP …) in memory to RGBA of 8 bits, or of 16 where the file has them; `label`
+// names it in errors.
 Texture decode_texture(std::string_view encoded, const std::string& label);
 
 }  // namespace chiaro::renderer

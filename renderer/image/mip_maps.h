@@ -11,8 +11,8 @@ struct MipOptions {
   bool alpha_weighted = false;  // where alpha is coverage: what is not there has no say in the colour
 };
 
-// Makes texture.mips where there are none. Every level's mean is the texture's: sides that are odd or no powers of two
-// are averaged with fractional weights.
+// Makes the mip maps of a texture that has none. Every level's mean is the texture's: sides that are odd or no powers
+// of two are averaged with fractional weights.
 void make_mip_maps(Texture& texture, const MipOptions& options);
 
 }  // namespace chiaro::renderer

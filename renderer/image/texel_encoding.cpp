@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "renderer/image/srgb_curve.h"
@@ -9,15 +10,19 @@
 namespace chiaro::renderer {
 namespace {
 
-DecodeTable make_srgb_table() {
-  DecodeTable table;
-  for (int i = 0; i < 256; ++i) table[i] = float(linear_from_srgb(i / 255.0));
+template <class Channel>
+DecodeTableOf<Channel> make_srgb_table() {
+  constexpr double kOne = std::numeric_limits<Channel>::max();
+  DecodeTableOf<Channel> table;
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = float(linear_from_srgb(double(i) / kOne));
   return table;
 }
 
-DecodeTable make_linear_table() {
-  DecodeTable table;
-  for (int i = 0; i < 256; ++i) table[i] = float(i) / 255.0F;
+template <class Channel>
+DecodeTableOf<Channel> make_linear_table() {
+  constexpr float kOne = std::numeric_limits<Channel>::max();
+  DecodeTableOf<Channel> table;
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = float(i) / kOne;
   return table;
 }
 
@@ -35,14 +40,22 @@ std::vector<std::uint8_t> make_encode_table() {
 
 }  // namespace
 
-const DecodeTable& decode_table(bool srgb) {
-  static const DecodeTable kSrgb = make_srgb_table(), kLinear = make_linear_table();
+template <class Channel>
+const DecodeTableOf<Channel>& decode_table(bool srgb) {
+  static const DecodeTableOf<Channel> kSrgb = make_srgb_table<Channel>(), kLinear = make_linear_table<Channel>();
   return srgb ? kSrgb : kLinear;
 }
+
+template const DecodeTableOf<std::uint8_t>& decode_table<std::uint8_t>(bool);
+template const DecodeTableOf<std::uint16_t>& decode_table<std::uint16_t>(bool);
 
 std::uint8_t encode_srgb(float linear) {
   static const std::vector<std::uint8_t> kTable = make_encode_table();
   return kTable[std::size_t(std::clamp(linear, 0.0F, 1.0F) * kEncodeSteps + 0.5F)];
+}
+
+std::uint16_t encode_wide_srgb(float linear) {
+  return std::uint16_t(std::lround(65535 * srgb_from_linear(double(std::clamp(linear, 0.0F, 1.0F)))));
 }
 
 }  // namespace chiaro::renderer

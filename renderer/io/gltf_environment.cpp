@@ -1,6 +1,7 @@
 #include "renderer/io/gltf_environment.h"
 
 #include <array>
+#include <limits>
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -43,14 +44,20 @@ Texture decode(const GltfDocument& document, int image) {
 }
 
 // RGBD: linear colours divided by alpha; without alpha nothing is divided.
-std::vector<Vec3f> radiance_of(const Texture& texture) {
-  const DecodeTable& linear = decode_table(true);
-  std::vector<Vec3f> pixels(texture.rgba.size() / 4);
+template <class Channel>
+std::vector<Vec3f> radiance_of(const std::vector<Channel>& rgba) {
+  constexpr float kOpaque = std::numeric_limits<Channel>::max();
+  const DecodeTableOf<Channel>& linear = decode_table<Channel>(true);
+  std::vector<Vec3f> pixels(rgba.size() / 4);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const std::uint8_t* p = &texture.rgba[4 * i];
-    pixels[i] = Vec3f{linear[p[0]], linear[p[1]], linear[p[2]]} / (float(std::max<int>(p[3], 1)) / 255);
+    const Channel* p = &rgba[4 * i];
+    pixels[i] = Vec3f{linear[p[0]], linear[p[1]], linear[p[2]]} / (float(std::max<int>(p[3], 1)) / kOpaque);
   }
   return pixels;
+}
+
+std::vector<Vec3f> radiance_of(const Texture& texture) {
+  return is_wide(texture) ? radiance_of(texture.wide_rgba) : radiance_of(texture.rgba);
 }
 
 CubeMap read_cube_map(const GltfDocument& document, const tinygltf::Value& light, const std::string& place) {

@@ -59,6 +59,7 @@ void add(Fingerprint& f, const Texture& texture) {
   f.add(texture.wrap_v);
   f.add(texture.filtered_as_stored);
   add(f, texture.rgba);
+  if (is_wide(texture)) add(f, texture.wide_rgba);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ struct Locus {
   }
 
   int mip_level_for(const TextureUse& use, const Texture& texture) const {
-    if (!(footprint > 0) || texture.mips.empty()) return 0;
+    if (!(footprint > 0) || !has_mips(texture)) return 0;
     const auto& uv = mesh.uv[use.uv_set];
     const Vec2f a = uv[triangle[0]], b = uv[triangle[1]], c = uv[triangle[2]];
     const float area = 0.5F * std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));

@@ -43,7 +43,7 @@ double geometry_bytes(const Scene& scene) {
 
 double texture_bytes(const Scene& scene) {
   double bytes = 0;
-  for (const Texture& texture : scene.textures) bytes += bytes_of(texture.rgba);
+  for (const Texture& texture : scene.textures) bytes += bytes_of(texture.rgba) + bytes_of(texture.wide_rgba);
   return bytes;
 }
 

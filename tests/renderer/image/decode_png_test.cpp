@@ -91,7 +91,11 @@ TEST(DecodePng, SamplesOfEveryKindAreWhatOpenImageIoMakesOfThem) {
   const TemporaryFolder folder;
   using Bytes = std::vector<std::uint8_t>;
   const std::string wide = png(header(3, 1, 16, 0) + pixels(std::string("\0\x01\x02\x80\0\xff\xff", 7)));
-  EXPECT_EQ(decode_texture(wide, "t").rgba, (Bytes{1, 1, 1, 255, 128, 128, 128, 255, 255, 255, 255, 255}));
+  EXPECT_EQ(decode_texture(wide, "t").wide_rgba,
+            (std::vector<std::uint16_t>{258, 258, 258, 65535, 32768, 32768, 32768, 65535, 65535, 65535, 65535, 65535}));
+  EXPECT_TRUE(decode_texture(wide, "t").rgba.empty());
+  const std::string needlessly_wide = png(header(2, 1, 16, 0) + pixels(std::string("\0\x07\x07\xff\xff", 5)));
+  EXPECT_EQ(decode_texture(needlessly_wide, "t").rgba, (Bytes{7, 7, 7, 255, 255, 255, 255, 255}));
   EXPECT_EQ(load_image(folder.write("wide.png", wide)).image.pixels,
             (std::vector<float>{258 * (1 / 65535.0F), 32768 * (1 / 65535.0F), 1}));
   const std::string palette = png(header(2, 1, 2, 3) + chunk("PLTE", "abc012xyz") +

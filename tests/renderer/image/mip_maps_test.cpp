@@ -68,8 +68,21 @@ TEST(MipMaps, WhatIsNotThereHasNoSayInTheColour) {
   EXPECT_EQ(texture.mips[0], (std::vector<std::uint8_t>{200, 10, 20, 128}));
 }
 
+TEST(MipMaps, SixteenBitsStaySixteen) {
+  Texture texture{"", 2, 1, {}};
+  texture.wide_rgba = {300, 0, 7, 65535, 100, 1, 7, 65534};
+  Texture data = texture;
+  make_mip_maps(data, {});
+  EXPECT_TRUE(data.mips.empty());
+  ASSERT_EQ(data.wide_mips.size(), 1U);
+  EXPECT_EQ(data.wide_mips[0], (std::vector<std::uint16_t>{200, 1, 7, 65535}));
+  make_mip_maps(texture, {.srgb = true});
+  EXPECT_EQ(texture.wide_mips[0][0], 200) << "on the straight part of the curve";
+}
+
 TEST(MipMaps, EncodingIsTheInverseOfDecoding) {
   for (int i = 0; i < 256; ++i) EXPECT_EQ(encode_srgb(decode_table(true)[i]), i);
+  for (int i = 0; i < 65536; ++i) ASSERT_EQ(encode_wide_srgb(decode_table<std::uint16_t>(true)[i]), i);
 }
 
 }  // namespace

@@ -53,6 +53,25 @@ TEST(TextureLookup, BlendsColoursInLinearLightUnlessFilteredAsStored) {
   EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, false).x, 100 / 255.0F, 1e-6F);
 }
 
+// What lies between two steps of 8 bits: darker than their darkest, and the tilt of a normal map.
+TEST(TextureLookup, SixteenBitsAreNotCutToEight) {
+  Texture texture{"", 2, 1, {}};
+  texture.wide_rgba = {100, 32896, 700, 65535, 300, 32896, 700, 300};
+  texture.wrap_u = Wrap::kClampToEdge;
+  const Vec4f data = look_up(texture, {0.5F, 0.5F}, false), color = look_up(texture, {0.5F, 0.5F}, true);
+  EXPECT_NEAR(data.x, 200 / 65535.0F, 1e-8F);
+  EXPECT_NEAR(data.y, 32896 / 65535.0F, 1e-7F);
+  EXPECT_NEAR(color.x, 200 / 65535.0F / 12.92F, 1e-8F);
+  EXPECT_NEAR(color.w, (65535 + 300) / 2 / 65535.0F, 1e-5F);
+  texture.filtered_as_stored = true;
+  EXPECT_NEAR(look_up(texture, {0.5F, 0.5F}, true).z, 700 / 65535.0F / 12.92F, 1e-8F);
+  for (const bool nearest : {false, true}) {
+    texture.nearest = nearest;
+    EXPECT_NEAR(look_up_alpha(texture, {1, 0.5F}), 300 / 65535.0F, 1e-8F);
+    EXPECT_NEAR(look_up(texture, {1, 0.5F}, false).x, 300 / 65535.0F, 1e-8F);
+  }
+}
+
 TEST(TextureLookup, WrapsAsAsked) {
   // The texel that the coordinate u - 1/4 of the first one lies on: the last, the first mirrored, the first.
   EXPECT_NEAR(red(row(Wrap::kRepeat), -0.125F), 1, 1e-6F);
