@@ -33,6 +33,9 @@ constexpr float kUnpaintedWeightOnBlack = 0.05F;
 // What the strokes are applied to.
 inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
+  // Whatever the base: options of an environment that is none are refused.
+  const renderer::Lights lights =
+      choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   if (!options.from.empty()) {
     inverse::Target base = inverse::load_target(options.from);
     require_same_scene(*stage.tracer, base.receivers, options.from);
@@ -40,8 +43,6 @@ inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& s
   }
   if (strokes.base == inverse::StrokeBase::kBlack)
     return black_target(choose_receivers(*stage.tracer, options.surface));
-  const renderer::Lights lights =
-      choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   require_light(stage, lights, "lights in the scene, or strokes whose base is black");
   return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), lights,
                       trace_options(options.transport, options.common), session.control())
@@ -99,14 +100,27 @@ void print_summary(Session& session, const PaintCommand& options, const inverse:
                  aligned_rows(rows));
 }
 
-void warn_of_idle_options(const PaintCommand& options, Session& session) {
+void warn_of(const PaintCommand& options, const std::vector<std::string>& names, const char* why, Session& session) {
+  for (const std::string& name : names) {
+    if (was_given(*options.command, name)) session.warn(fmt::format("{}: does nothing {}", name, why));
+  }
+}
+
+// Of the light that a base is traced under. A picture shows what alpha the materials leave.
+void warn_of_idle_light(const PaintCommand& options, const char* why, Session& session) {
+  warn_of(options, {"--samples", "--bounces", "--environment", "--environment-rotation", "--environment-intensity"},
+          why, session);
+  if (options.picture.file.empty()) warn_of(options, {"--materials", "--albedo"}, why, session);
+}
+
+void warn_of_idle_options(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
   session.warn(idle_options(*options.command, {"--camera", "--width", "--height"}, {"--picture"}));
   session.warn(idle_view_options(*options.command, {"--picture"}, {"--environment"}));
-  if (options.from.empty()) return;
-  for (const char* name : {"--on", "--max-edge"}) {
-    if (was_given(*options.command, name)) {
-      session.warn(fmt::format("{}: does nothing with --from, which has receivers of its own", name));
-    }
+  if (!options.from.empty()) {
+    warn_of(options, {"--on", "--max-edge"}, "with --from, which has receivers of its own", session);
+    warn_of_idle_light(options, "with --from, which has an illumination of its own", session);
+  } else if (strokes.base == inverse::StrokeBase::kBlack) {
+    warn_of_idle_light(options, "on strokes whose base is black", session);
   }
 }
 
@@ -118,7 +132,7 @@ int run_paint(const PaintCommand& options) {
   const inverse::Target base = make_base(options, strokes, session);
   const inverse::PaintResult result = apply_strokes(options, base, strokes);
   session.stop_if_interrupted();
-  warn_of_idle_options(options, session);
+  warn_of_idle_options(options, strokes, session);
   warn_of_misses(options, result, session);
   inverse::save_target(result.target, options.output);
   save_illumination_picture(options.picture, options.scene, options.transport, result.target, session);

@@ -50,10 +50,8 @@ void print_summary(Session& session, const SolveCommand& options, const WantedTa
 }
 
 void warn_of_idle_options(const SolveCommand& options, Session& session) {
-  const std::vector<std::string> pictures{"--target-image", "--target-lightmap"};
-  session.warn(idle_view_options(*options.command, pictures, {"--environment"}));
-  session.warn(idle_options(*options.command, {"--image-content", "--image-space", "--keep-white"}, pictures));
-  session.warn(idle_options(*options.command, {"--lightmap-uv"}, {"--target-lightmap"}));
+  session.warn(idle_view_options(*options.command, {"--target-image", "--target-lightmap"}, {"--environment"}));
+  session.warn(idle_target_options(*options.command));
 }
 
 void refuse_what_excludes_each_other(const SolveCommand& options) {

@@ -177,6 +177,10 @@ class TargetLoading {
   inverse::Target from_file() const {
     inverse::Target target = inverse::load_target(choices_.file, choices_.scale);
     require_same_scene(*stage_.tracer, target.receivers, choices_.file);
+    if (choices_.scale != 1 && !target.has_scaled_colors) {
+      session_.warn(
+          fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", choices_.file));
+    }
     return target;
   }
 
@@ -268,6 +272,18 @@ void require_a_target(const TargetChoices& choices) {
     throw UsageError("--exposure: auto does not tell what a painted picture's white is (expected a number)");
   }
   require_masks_of_pictures(choices);
+}
+
+std::vector<std::string> idle_target_options(const CLI::App& command) {
+  const std::vector<std::string> pictures{"--target-image", "--target-lightmap"};
+  std::vector<std::string> warnings =
+      idle_options(command, {"--image-content", "--image-space", "--keep-white"}, pictures);
+  for (const auto& [option, needed] :
+       {std::pair{"--lightmap-uv", "--target-lightmap"}, {"--target-scale", "--target"}}) {
+    const std::vector<std::string> idle = idle_options(command, {option}, {needed});
+    warnings.insert(warnings.end(), idle.begin(), idle.end());
+  }
+  return warnings;
 }
 
 bool is_target_file_alone(const TargetChoices& choices) { return choices.images.empty() && choices.lightmaps.empty(); }

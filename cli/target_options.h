@@ -36,6 +36,9 @@ void add_target_options(CLI::App& command, TargetChoices& choices);
 // UsageError where they contradict each other.
 void require_a_target(const TargetChoices& choices);
 
+// A warning for each option that was given and is of a kind of target that is not.
+std::vector<std::string> idle_target_options(const CLI::App& command);
+
 // Whether a target file is wanted as it is, and nothing else.
 bool is_target_file_alone(const TargetChoices& choices);
 

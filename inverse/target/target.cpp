@@ -42,6 +42,8 @@ float wanted_weight(const VertexMeshPart& part, std::size_t vertex) {
   return part.weight.empty() ? 1 : part.weight[vertex];
 }
 
+bool has_colors_alone(const VertexMeshPart& part) { return part.illumination.empty() && !part.color.empty(); }
+
 void append_part(Target& target, const VertexMeshPart& part, float target_scale, const std::string& file) {
   for (std::size_t i = 0; i < part.positions.size(); ++i) {
     const Vec3f value = wanted_value(part, i, target_scale);
@@ -117,6 +119,7 @@ Target load_illumination(const std::filesystem::path& path, float target_scale) 
   if (std::none_of(mesh.parts.begin(), mesh.parts.end(), has_values)) {
     throw Error({file, "", "an empty target: no primitive has illumination", "vertices with _ILLUMINATION or COLOR_0"});
   }
+  target.has_scaled_colors = std::any_of(mesh.parts.begin(), mesh.parts.end(), has_colors_alone);
   if (all_know_their_error(mesh)) {
     for (const VertexMeshPart& part : mesh.parts) append_standard_error(target, part, file);
   }

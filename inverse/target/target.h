@@ -13,6 +13,7 @@ struct Target {
   std::vector<Vec3f> illumination;    // cd/m² per receiver
   std::vector<float> weight;          // per receiver, ≥ 0
   std::vector<float> standard_error;  // cd/m² per receiver; empty: not known
+  bool has_scaled_colors = false;     // some of it is COLOR_0 times a target's scale
 };
 
 // `.glb`/`.gltf` with _ILLUMINATION, or COLOR_0 × target_scale (cd/m²) where that is absent. Error where a file has

@@ -98,6 +98,49 @@ TEST(CliPaint, PicturesAreAsBrightAsTheIllumination) {
   EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 9e4F);
 }
 
+void expect_told(const Outcome& outcome, const std::string& line, bool told = true) {
+  EXPECT_EQ(outcome.standard_error.find("chiaro: warning: " + line + "\n") != std::string::npos, told)
+      << line << " in " << outcome.standard_error;
+}
+
+TEST(CliPaint, LightThatIsNotTracedIsTold) {
+  const TemporaryFolder folder;
+  const std::string painted = folder / "painted.glb";
+  const std::string strokes =
+      folder.write("s.json", R"({"strokes":[{"color":[1,1,1],"radius":9,"path":[[0,0,0]]}]})").string();
+  const auto paint = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"paint", kScenes + "cornell.glb", "--strokes", strokes, "-o", painted};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_with(arguments);
+  };
+  const std::string black = ": does nothing on strokes whose base is black";
+  const Outcome on_black = paint({"--samples", "4", "--bounces", "0", "--albedo", "0.5"});
+  EXPECT_EQ(on_black.exit_code, kDone) << on_black.standard_error;
+  for (const char* option : {"--samples", "--bounces", "--albedo"}) expect_told(on_black, option + black);
+  const Outcome pictured = paint({"--albedo", "0.5", "--picture", folder / "p.exr", "--width", "8"});
+  expect_told(pictured, "--albedo" + black, false);
+  const std::string earlier = folder / "earlier.glb";
+  std::filesystem::copy_file(painted, earlier);
+  const Outcome again = paint({"--from", earlier, "--samples", "4"});
+  expect_told(again, "--samples: does nothing with --from, which has an illumination of its own");
+  const Outcome turned = paint({"--environment-rotation", "30"});
+  EXPECT_EQ(turned.exit_code, kFailed);
+  EXPECT_NE(turned.standard_error.find("there is no environment"), std::string::npos) << turned.standard_error;
+}
+
+TEST(CliSolve, AScaleOfWhatIsNotScaledIsTold) {
+  const TemporaryFolder folder;
+  const std::string scene = kScenes + "cornell.glb", target = folder / "target.glb";
+  const Outcome lit =
+      run_with({"illuminate", scene, "-o", target, "--max-edge", "1", "--samples", "4", "--bounces", "0"});
+  ASSERT_EQ(lit.exit_code, kDone) << lit.standard_error;
+  const Outcome solved = run_with({"solve", scene, "--target", target, "--target-scale", "500", "--keep-white",
+                                   "--keep-positions", "--bounces", "0", "-o", folder / "lights.glb"});
+  EXPECT_EQ(solved.exit_code, kDone) << solved.standard_error;
+  expect_told(solved, "--target-scale: does nothing with " + target + ", whose _ILLUMINATION is in cd/m²");
+  expect_told(solved, "--keep-white: does nothing without --target-image or --target-lightmap");
+}
+
 TEST(CliIlluminate, OnePathWritesNoStandardErrors) {
   const TemporaryFolder folder;
   const std::string file = folder / "lit.glb";

@@ -51,6 +51,11 @@ Target make_rich_target() {
   return target;
 }
 
+TEST(Target, KnowsWhetherAScaleIsInIt) {
+  EXPECT_TRUE(load_nodes({{"a", {{"COLOR_0", kValues}}}, {"b", {{"_ILLUMINATION", kValues}}}}).has_scaled_colors);
+  EXPECT_FALSE(load_nodes({{"a", {{"COLOR_0", kValues}, {"_ILLUMINATION", kValues}}}, {"b", {}}}).has_scaled_colors);
+}
+
 TEST(Target, ComesBackFromItsFileBitForBit) {
   const TemporaryFolder folder;
   const Target saved = make_rich_target();
