@@ -15,6 +15,7 @@
 #include "cli/session.h"
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
+#include "renderer/core/counted.h"
 #include "renderer/image/image_file.h"
 
 namespace chiaro::cli {
@@ -41,7 +42,7 @@ int limit_exceeded(const std::string& what, const std::string& reason, double li
 int verdict(const CompareCommand& options, const std::string& what, const FrameFigures& found) {
   const auto& [image, flip, flip_hdr] = found;
   if (image.not_finite > 0 && (options.fail_above || options.fail_above_flip)) {
-    return limit_exceeded(what, fmt::format("{} pixels are not finite", image.not_finite), 0);
+    return limit_exceeded(what, renderer::counted(image.not_finite, "pixel is not finite", "pixels are not finite"), 0);
   }
   if (options.fail_above && !(image.relative_l2 <= *options.fail_above)) {
     return limit_exceeded(what, fmt::format("relative_l2 is {:.6g}", image.relative_l2), *options.fail_above);
@@ -94,7 +95,7 @@ int compare_two_frames(const CompareCommand& options, Session& session) {
       naming_file(options.a, [&] { return compare_frames(frames, options.frames, session.control()); });
   session.warn(frames.notes);
   if (const std::size_t bad = comparison.whole.image.not_finite; bad > 0) {
-    session.warn(fmt::format("{} pixels are not finite and left out", bad));
+    session.warn(renderer::counted(bad, "pixel is not finite and left out", "pixels are not finite and left out"));
   }
   if (!options.output.empty()) {
     renderer::save_image(renderer::comparison_picture(comparison.panels), options.output, renderer::PixelType::kUint8);

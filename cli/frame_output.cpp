@@ -7,6 +7,7 @@
 
 #include "cli/add_options.h"
 #include "cli/usage_error.h"
+#include "renderer/core/counted.h"
 #include "renderer/image/scene_linear.h"
 
 namespace chiaro::cli {
@@ -173,11 +174,15 @@ std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& cam
 
 void warn_of_frame(const renderer::Frame& frame, std::size_t held, const std::string& name, Session& session) {
   if (frame.dropped_samples > 0) {
-    session.warn(fmt::format("{}: {} samples were not finite and are left black", name, frame.dropped_samples));
+    session.warn(fmt::format(
+        "{}: {} left black", name,
+        renderer::counted(frame.dropped_samples, "sample was not finite and is", "samples were not finite and are")));
   }
   if (held > 0) {
-    session.warn(fmt::format(
-        "{}: {} pixels are brighter than half floats hold, and are held at 65504 (--float keeps them)", name, held));
+    session.warn(fmt::format("{}: {} held at 65504 (--float keeps {})", name,
+                             renderer::counted(held, "pixel is brighter than half floats hold, and is",
+                                               "pixels are brighter than half floats hold, and are"),
+                             held == 1 ? "it" : "them"));
   }
 }
 

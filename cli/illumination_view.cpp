@@ -65,7 +65,8 @@ Image illumination_difference(const Image& a, const Image& b) {
 void add_illumination_picture_options(CLI::App& command, IlluminationPictureOptions& options) {
   add_text(command,
            {"--picture", "P.png|P.exr",
-            "The illumination as a camera sees it, too: of white surfaces, hatched where none is known"},
+            "The illumination as a camera sees it, too: of white surfaces, hatched where none is known (.exr, .png, "
+            ".jpg, .jpeg, .tif or .tiff)"},
            options.file);
   add_text(command, {"--camera", "NAME", "Camera of the picture (default: the scene's first)"}, options.camera);
   add_count(command, {"--width", "W", "Pixels across of the picture (default 960)"}, options.size.width, {1, 1 << 16});

@@ -26,6 +26,9 @@ bool parses_whole(std::string_view text, T& value) {
 std::string describe(const NumberRange& range) {
   const bool has_min = range.min > std::numeric_limits<double>::lowest();
   const bool has_max = range.max < std::numeric_limits<double>::max();
+  if (has_min && has_max && range.min_excluded) {
+    return fmt::format("a number above {} and at most {}", range.min, range.max);
+  }
   if (has_min && has_max) return fmt::format("a number from {} to {}", range.min, range.max);
   if (has_min) return fmt::format("a number {} {}", range.min_excluded ? "above" : "not below", range.min);
   if (has_max) return fmt::format("a number not above {}", range.max);

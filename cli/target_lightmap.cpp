@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/text_output.h"
+#include "renderer/core/counted.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -22,16 +23,16 @@ void require_some_used(const LightmapFile& lightmap, const LightmapValues& read)
 }
 
 void warn_of_lightmap(const LightmapFile& lightmap, const LightmapValues& read, Session& session) {
-  const auto warn = [&](std::size_t count, const std::string& what) {
-    if (count > 0) session.warn(fmt::format("{}: {} {}", lightmap.file, count, what));
+  const auto warn = [&](std::size_t count, const char* one, const char* many, const std::string& what) {
+    if (count > 0) session.warn(fmt::format("{}: {} {}", lightmap.file, renderer::counted(count, one, many), what));
   };
-  warn(read.counts.invalid, "texels are not finite or negative, and left out");
-  warn(read.counts.overlapping, fmt::format("texels are in several triangles of '{}' at once, and left out: its "
-                                            "TEXCOORD_{} overlaps itself",
-                                            lightmap.node, read.uv_set));
-  warn(read.triangles_outside, fmt::format("triangles of '{}' are left out: their TEXCOORD_{} leaves the range from 0 "
-                                           "to 1, and lightmaps do not repeat",
-                                           lightmap.node, read.uv_set));
+  warn(read.counts.invalid, "texel is", "texels are", "not finite or negative, and left out");
+  warn(read.counts.overlapping, "texel is", "texels are",
+       fmt::format("in several triangles of '{}' at once, and left out: its TEXCOORD_{} overlaps itself", lightmap.node,
+                   read.uv_set));
+  warn(read.triangles_outside, "triangle is", "triangles are",
+       fmt::format("left out of '{}': TEXCOORD_{} leaves the range from 0 to 1 there, and lightmaps do not repeat",
+                   lightmap.node, read.uv_set));
   if (read.copies > 1) {
     session.warn(fmt::format("{}: '{}' stands in the scene {} times: the lightmap is taken to show each of them",
                              lightmap.file, lightmap.node, read.copies));

@@ -11,6 +11,7 @@
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "inverse/target/target_from_values.h"
+#include "renderer/core/counted.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -120,7 +121,8 @@ void require_some_used(const NamedFile& image, const PixelCounts& counts) {
 
 void warn_of_counts(const NamedFile& image, const PixelCounts& counts, std::size_t pixels, Session& session) {
   if (counts.invalid > 0) {
-    session.warn(fmt::format("{}: {} pixels are not finite or negative, and left out", image.file, counts.invalid));
+    session.warn(fmt::format("{}: {} not finite or negative, and left out", image.file,
+                             renderer::counted(counts.invalid, "pixel is", "pixels are")));
   }
   if (double(counts.used) <= kHardlyAnyIsUsed * double(pixels)) {
     session.warn(fmt::format("{}: only {} of {} pixels tell an illumination", image.file, counts.used, pixels));

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "cli/add_options.h"
 #include "cli/usage_error.h"
 
@@ -13,7 +15,12 @@ constexpr NumberRange kExposureRange{.min = -100, .max = 100};
 
 void parse_exposure(const std::string& text, ViewChoice& choice) {
   choice.auto_exposure = text == "auto";
-  choice.view.exposure = choice.auto_exposure ? 0 : float(parse_number(text, kExposureRange));
+  try {
+    choice.view.exposure = choice.auto_exposure ? 0 : float(parse_number(text, kExposureRange));
+  } catch (const UsageError&) {
+    throw UsageError(
+        fmt::format("'{}' (expected auto, or a number from {} to {})", text, kExposureRange.min, kExposureRange.max));
+  }
 }
 
 }  // namespace

@@ -90,7 +90,8 @@ void check_choice(const std::string& name, const std::vector<std::string>& choic
                   const std::filesystem::path& path) {
   if (std::find(choices.begin(), choices.end(), name) != choices.end()) return;
   throw Error({path.string(), place, fmt::format("\"{}\" is not in the config", name),
-               fmt::format("one of {}", fmt::join(choices, ", "))});
+               choices.empty() ? fmt::format("none: the config has no {}", place)
+                               : fmt::format("one of {}", fmt::join(choices, ", "))});
 }
 
 std::vector<std::string> displays_of(const ocio::ConstConfigRcPtr& config) {

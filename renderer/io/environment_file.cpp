@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/core/counted.h"
 #include "renderer/core/error.h"
 #include "renderer/core/world_limits.h"
 #include "renderer/image/scene_linear.h"
@@ -56,8 +57,9 @@ EnvironmentLight load_environment(const std::filesystem::path& path, std::vector
   const ImageFile image = load_image(path);
   EnvironmentMap map{image.image.width, image.image.height, scene_linear_rec709(image, file, config)};
   if (const std::size_t count = mend_pixels(map); count > 0) {
-    warnings.push_back(
-        fmt::format("{}: {} pixels are negative, not finite or too bright; they are mended", file, count));
+    warnings.push_back(fmt::format("{}: {}", file,
+                                   counted(count, "pixel is negative, not finite or too bright; it is mended",
+                                           "pixels are negative, not finite or too bright; they are mended")));
   }
   const bool dark = std::all_of(map.pixels.begin(), map.pixels.end(), [](Vec3f p) { return !(max_component(p) > 0); });
   if (dark) throw Error({file, "pixels", "are all black", "an environment that gives light"});

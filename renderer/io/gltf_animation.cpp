@@ -158,6 +158,17 @@ class AnimationReader {
   int animation_;
 };
 
+// Which there are, by their numbers and names.
+std::string text_of_choices(const std::vector<GltfAnimation>& animations) {
+  if (animations.empty()) return "none: the file has no animation";
+  std::string names;
+  for (const GltfAnimation& animation : animations) {
+    if (!animation.name.empty()) names += (names.empty() ? "" : ", ") + animation.name;
+  }
+  const std::string numbers = animations.size() == 1 ? "0" : fmt::format("0 to {}", animations.size() - 1);
+  return names.empty() ? numbers : fmt::format("{}, or: {}", numbers, names);
+}
+
 std::vector<int> named(const GltfDocument& document, const std::string& name) {
   const std::vector<GltfAnimation>& animations = document.json.animations;
   for (std::size_t i = 0; i < animations.size(); ++i) {
@@ -166,10 +177,7 @@ std::vector<int> named(const GltfDocument& document, const std::string& name) {
   for (std::size_t i = 0; i < animations.size(); ++i) {
     if (std::to_string(i) == name) return {int(i)};
   }
-  std::string names;
-  for (const GltfAnimation& animation : animations) names += (names.empty() ? "" : ", ") + animation.name;
-  fail(document, "animations", fmt::format("none is \"{}\"", name.substr(0, 80)),
-       animations.empty() ? "the file has none" : fmt::format("0 to {}, or: {}", animations.size() - 1, names));
+  fail(document, "animations", fmt::format("none is \"{}\"", name.substr(0, 80)), text_of_choices(animations));
 }
 
 std::vector<int> those_that_play(const GltfDocument& document, std::vector<std::string>& warnings) {

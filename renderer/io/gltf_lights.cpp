@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include "renderer/core/counted.h"
 #include "renderer/core/world_limits.h"
 
 namespace chiaro::renderer {
@@ -133,7 +134,8 @@ NodeLights read_lights(const GltfDocument& document, const std::vector<PlacedNod
       warnings.push_back(fmt::format("{}: a light scaled to nothing is left out", place_of(node)));
     }
   }
-  if (with_range > 0) warnings.push_back(fmt::format("the range of {} lights is ignored", with_range));
+  if (with_range > 0)
+    warnings.push_back(fmt::format("the range of {} is ignored", counted(with_range, "light", "lights")));
   return read;
 }
 

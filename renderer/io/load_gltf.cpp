@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/core/counted.h"
 #include "renderer/core/world_limits.h"
 #include "renderer/io/gltf_document.h"
 #include "renderer/io/gltf_environment.h"
@@ -73,19 +74,25 @@ void check_size(const GltfDocument& document, const Scene& scene) {
        fmt::format("{:g} m or more: glTF's unit is the metre", kLeastScene));
 }
 
-void warn(std::vector<std::string>& warnings, std::size_t count, const char* what) {
-  if (count > 0) warnings.push_back(fmt::format("{} {}", count, what));
+void warn(std::vector<std::string>& warnings, std::size_t count, const char* one, const char* many) {
+  if (count > 0) warnings.push_back(counted(count, one, many));
 }
 
 void warn_of_repairs(const NodeMeshList& meshes, std::size_t left_out, std::vector<std::string>& warnings) {
   const MeshRepairs& repairs = meshes.repairs;
-  warn(warnings, repairs.degenerate_triangles, "triangles of zero area are left out");
-  warn(warnings, repairs.bad_normals, "normals of no direction are replaced by the surface's");
-  warn(warnings, repairs.bad_tangent_meshes, "meshes have tangents of no direction; they are made anew");
-  warn(warnings, repairs.bad_coordinates, "texture coordinates or colours that are not finite are replaced");
-  warn(warnings, repairs.bad_skin_weights, "vertices have skin weights that do not add up to 1; they are mended");
-  warn(warnings, meshes.without_triangles, "primitives without triangles (points, lines) are left out");
-  warn(warnings, left_out, "instances scaled to nothing are left out");
+  warn(warnings, repairs.degenerate_triangles, "triangle of zero area is left out",
+       "triangles of zero area are left out");
+  warn(warnings, repairs.bad_normals, "normal of no direction is replaced by the surface's",
+       "normals of no direction are replaced by the surface's");
+  warn(warnings, repairs.bad_tangent_meshes, "mesh has tangents of no direction; they are made anew",
+       "meshes have tangents of no direction; they are made anew");
+  warn(warnings, repairs.bad_coordinates, "texture coordinate or colour that is not finite is replaced",
+       "texture coordinates or colours that are not finite are replaced");
+  warn(warnings, repairs.bad_skin_weights, "vertex has skin weights that do not add up to 1; they are mended",
+       "vertices have skin weights that do not add up to 1; they are mended");
+  warn(warnings, meshes.without_triangles, "primitive without triangles (points, lines) is left out",
+       "primitives without triangles (points, lines) are left out");
+  warn(warnings, left_out, "instance scaled to nothing is left out", "instances scaled to nothing are left out");
 }
 
 }  // namespace

@@ -44,6 +44,14 @@ Outcome render_preview(const TemporaryFolder& folder, const std::vector<std::str
   return run_with(arguments);
 }
 
+TEST(CliRender, AnExposureMayBeAutomatic) {
+  const TemporaryFolder folder;
+  const Outcome outcome = render_preview(folder, {"--exposure", "bright"});
+  EXPECT_EQ(outcome.exit_code, kWrongUsage);
+  EXPECT_NE(outcome.standard_error.find("expected auto, or a number from -100 to 100"), std::string::npos)
+      << outcome.standard_error;
+}
+
 TEST(CliRender, NamesThePreviewAmongWhatItWrote) {
   const TemporaryFolder folder;
   const std::string frame = folder / "frame.exr", preview = folder / "frame.png";

@@ -21,6 +21,19 @@ TEST(CliOptionValues, NumbersThatAreNotFiniteAreRefused) {
   }
 }
 
+std::string refusal_of_grid(const char* text) {
+  try {
+    parse_grid(text);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CliOptionValues, RangesSayWhetherTheirEndsAreInThem) {
+  EXPECT_EQ(refusal_of_grid("0%"), "'0' (expected a number above 0 and at most 100)");
+}
+
 TEST(CliOptionValues, RangesHoldAtTheirEnds) {
   EXPECT_EQ(parse_number("0", kNotNegative), 0);
   EXPECT_THROW(parse_number("0", kPositive), UsageError);

@@ -142,6 +142,8 @@ TEST(ColorManagement, UnknownChoicesAreRefusedNamingThoseThereAre) {
   const std::string space = error_of([&] { convert_from_rec709(image, config, "nowhere", {""}); });
   EXPECT_NE(space.find("lin_rec709, gamma2, acescg, odd"), std::string::npos) << space;
   EXPECT_NE(error_of([&] { renderer::chromaticities_of(config, "nowhere"); }), "");
+  const std::string look = message({"", "", 0, "warm"});
+  EXPECT_NE(look.find("(expected none: the config has no look)"), std::string::npos) << look;
 }
 
 TEST(ColorManagement, BrokenConfigsAreRefusedInOneLine) {

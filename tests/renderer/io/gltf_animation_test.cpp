@@ -163,6 +163,16 @@ TEST(Animation, TheFirstPlaysWhereTheyMoveTheSame) {
   EXPECT_NE(message.find("none is \"fly\" (expected 0 to 1, or: walk, run)"), std::string::npos) << message;
 }
 
+TEST(Animation, WhichThereAreIsSaid) {
+  GltfBuilder gltf = triangle_scene();
+  const auto message = [&] { return error_of([&] { load(gltf, 0.0, "5"); }); };
+  EXPECT_NE(message().find("none is \"5\" (expected none: the file has no animation)"), std::string::npos) << message();
+  add_animation(gltf, {{{0}, {1, 0, 0}, "translation"}});
+  EXPECT_NE(message().find("none is \"5\" (expected 0)"), std::string::npos) << message();
+  add_animation(gltf, {{{0}, {2, 0, 0}, "translation"}}, "run");
+  EXPECT_NE(message().find("none is \"5\" (expected 0 to 1, or: run)"), std::string::npos) << message();
+}
+
 struct BadAnimation {
   const char* name;
   Channel channel;

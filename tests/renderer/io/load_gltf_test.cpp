@@ -219,7 +219,7 @@ TEST(GltfNodes, CopiesWithoutVolumeAreLeftOut) {
   gltf.root["nodes"][0]["scale"] = {0, 0, 0};
   const LoadedScene loaded = load(gltf);
   EXPECT_TRUE(loaded.scene.instances.empty());
-  EXPECT_TRUE(mentions(loaded.warnings, "1 instances scaled to nothing"));
+  EXPECT_TRUE(mentions(loaded.warnings, "1 instance scaled to nothing"));
 }
 
 TEST(GltfNodes, AScaleOfZeroAcrossAFlatMeshLeavesItAsItIs) {
@@ -317,7 +317,7 @@ TEST(GltfLights, ArePlacedByTheirNodes) {
   EXPECT_FLOAT_EQ(beam.outer_cone_angle, 0.3F);
   EXPECT_EQ(beam.intensity, (Vec3f{1, 1, 1}));
   expect_near(std::get<renderer::DirectionalLight>(loaded.lights[2]).direction, {0, 0, -1});
-  EXPECT_TRUE(mentions(loaded.warnings, "range of 1 lights is ignored"));
+  EXPECT_TRUE(mentions(loaded.warnings, "range of 1 light is ignored"));
 }
 
 TEST(GltfMaterials, FactorsTexturesAndAlphaComeThrough) {
@@ -389,6 +389,16 @@ TEST(GltfMaterials, TexturesWhoseCoordinatesAMeshHasNotAreTold) {
   EXPECT_EQ(told, expected);
   gltf.primitive()["attributes"].erase("TEXCOORD_0");
   EXPECT_TRUE(mentions(load_gltf(folder.write("scene.glb", gltf.glb())).warnings, "baseColorTexture"));
+}
+
+TEST(GltfMaterials, CoordinatesOfNoSuchNumberAreRefused) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["textures"] = ordered_json::array({ordered_json::object()});
+  gltf.root["materials"] = ordered_json::array({{{"normalTexture", {{"index", 0}, {"texCoord", 1e10}}}}});
+  const std::string message = error_of([&] { load(gltf); });
+  EXPECT_NE(message.find("materials[0].normalTexture.texCoord: is 10000000000 (expected at most 1e+09)"),
+            std::string::npos)
+      << message;
 }
 
 TEST(GltfBuffers, DataUrisAndFilesWithSpacesAreRead) {
