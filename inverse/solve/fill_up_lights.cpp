@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kShare = 0.01;       // of the brightest light, for a light that would be dark
+constexpr double kShare = 0.001;      // of the brightest light, for a light that would be dark
 constexpr std::size_t kStarts = 12;   // of all arrangements from scratch
 constexpr std::size_t kFarthest = 8;  // places that are tried beside lights that make room
 

@@ -100,6 +100,15 @@ Observations weighted_by_noise(const Observations& observations, double transpor
   return weighted;
 }
 
+Observations in_mean_weights(const Observations& observations) {
+  const double mean = observations.sqrt_weight.size() > 0 ? observations.sqrt_weight.cwiseAbs2().mean() : 0;
+  if (!(mean > 0)) return observations;
+  Observations relative = observations;
+  relative.sqrt_weight /= std::sqrt(mean);
+  relative.measure_target();
+  return relative;
+}
+
 Observations weighted_by_objective(const Observations& observations, Objective objective) {
   if (objective == Objective::kL2) return observations;
   const Eigen::VectorXd y = observations.target * Eigen::Vector3d(0.2126, 0.7152, 0.0722);

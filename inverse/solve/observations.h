@@ -32,6 +32,9 @@ Observations with_capped_weights(const Observations& observations);
 // The same with weights by how well each receiver is known: its standard error, and the relative error of transport.
 Observations weighted_by_noise(const Observations& observations, double transport_error);
 
+// The same, whatever unit weights are given in.
+Observations in_mean_weights(const Observations& observations);
+
 // How a receiver's error counts.
 enum class Objective : std::uint8_t {
   kL2,          // as (3.6) has it

@@ -108,8 +108,8 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
 
 // What the receivers drawn want of the free lights.
 Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& traced) {
-  Observations observations =
-      observe_target(with.target, with.draw, numerics::chosen_from(traced.all.value, with.draw.chosen));
+  Observations observations = in_mean_weights(
+      observe_target(with.target, with.draw, numerics::chosen_from(traced.all.value, with.draw.chosen)));
   for (const Column& brought : free.brought) observations.wanted += brought;
   if (with.held > 0) return with_capped_weights(observations);
   if (with.target.standard_error.empty()) return observations;

@@ -11,8 +11,8 @@
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/check_brightness.h"
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/enough_lights.h"
 #include "inverse/solve/error_curve.h"
-#include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/observe_target.h"
@@ -121,15 +121,6 @@ void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
                lights > 1 ? fmt::format("no light possible: {} lights {} m apart find no place", lights, distance)
                           : fmt::format("no light possible: none finds a place {} m from those that stay", distance),
                "fewer lights, a smaller distance between them, or a larger region"});
-}
-
-// As many as asked for, or one: further ones share a place with others, where they may. True: there are more.
-bool fill_up(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
-             const FillUpLimits& limits, LightEstimates& lights) {
-  const std::size_t before = lights.size(), wanted = std::size_t(std::max(1, options.exact_lights));
-  if (may_share_places(problem)) lights = as_many_as_asked_for(std::move(lights), wanted);
-  lights = filled_up(searched.response, searched.judged, std::move(lights), wanted, limits);
-  return lights.size() > before;
 }
 
 // As many as asked for, and one of them shines.
@@ -279,7 +270,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const double before = clock.total();
   Optimum optimum = searched->conclude(clock);
   result.optimal_seconds += clock.total() - before;
-  if (fill_up(problem, options, *searched, {clock, control}, optimum.lights)) {
+  if (fill_up_to_wanted(problem, options, *searched, {clock, control}, optimum)) {
     result.optimal_seconds += clock.finish("filling_up", {{"lights", double(optimum.lights.size())}});
   }
   require_all_lights(problem, options, searched->response, optimum.lights);

@@ -94,6 +94,22 @@ TEST_F(SettleByTrace, TheTraceIsThatOfTheSettledLights) {
   EXPECT_NEAR(judged, after, 0.1 * after);
 }
 
+// A part of the target is paint that no light makes, which weighs by its distance from the noise.
+TEST_F(SettleByTrace, WeightsMayBeGivenInAnyUnit) {
+  const LightEstimates known = known_lights(2);
+  Target target = corner_.target(known, -1);
+  for (std::size_t i = 0; i < target.illumination.size(); i += 17) target.illumination[i] *= 1.5F;
+  const LightsByTrace one = settle(target, displaced(known, 0.005));
+  for (float& weight : target.weight) weight *= 1024;
+  const LightsByTrace other = settle(target, displaced(known, 0.005));
+  ASSERT_TRUE(one.intervals && other.intervals);
+  for (std::size_t j = 0; j < known.size(); ++j) {
+    EXPECT_LT((one.lights[j].position - other.lights[j].position).norm(), 1e-6);
+    const Eigen::Array3d ratio = one.intervals->lights[j].intensity / other.intervals->lights[j].intensity;
+    EXPECT_LT((ratio - 1).abs().maxCoeff(), 1e-6);
+  }
+}
+
 TEST_F(SettleByTrace, LightsFarFromTheirPlaceAreTracedAgain) {
   for (const std::size_t count : {std::size_t{2}, std::size_t{3}}) {
     const LightEstimates known = known_lights(count);
