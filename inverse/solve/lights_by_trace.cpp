@@ -27,16 +27,17 @@ Column at_one_candela(const Column& brought, const LightEstimate& light) {
   return brought * growth(light.intensity, Eigen::Array3d::Ones()).matrix().asDiagonal();
 }
 
+// Paths of each of so many receivers that are traced again, after a trace of all.
+int paths_again(const FreshTrace& traced, std::size_t receivers) {
+  return std::min(traced.samples, std::max(kLeastPaths, int(kPathsAgain / double(receivers))));
+}
+
 // Unity columns of some receivers, by other paths than those of a trace for verification.
-std::vector<Column> traced_again(const SolveProblem& problem, const SolveOptions& options,
+std::vector<Column> traced_again(const SolveProblem& problem, const renderer::TraceOptions& trace,
                                  const renderer::Control& control, const LightEstimates& lights,
                                  const std::vector<std::size_t>& receivers) {
-  const int most = verification_samples(options, problem.target.receivers.size());
-  const int paths = std::min(most, std::max(kLeastPaths, int(kPathsAgain / double(receivers.size()))));
   const auto samples = numerics::chosen_from(problem.target.receivers.samples, receivers);
-  const auto traced =
-      trace_illumination_by_light(problem.tracer, samples, point_lights(lights),
-                                  {paths, problem.bake.bounces, fresh_seed(options.seed, 7), false}, control);
+  const auto traced = trace_illumination_by_light(problem.tracer, samples, point_lights(lights), trace, control);
   std::vector<Column> unity;
   for (std::size_t j = 0; j < lights.size(); ++j)
     unity.push_back(at_one_candela(column_of(traced.of_light[j]), lights[j]));
@@ -98,8 +99,10 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   }
   observations = weighted_by_objective(standing_for_all(observations), options.objective);
   observations.rules = problem.intensities;
+  const renderer::TraceOptions again{paths_again(by_trace.traced, draw.chosen.size()), problem.bake.bounces,
+                                     fresh_seed(options.seed, 7), false};
   const IntensityFit fit =
-      fit_traced_columns(observations, unity, traced_again(problem, options, control, lights, draw.chosen));
+      fit_traced_columns(observations, unity, traced_again(problem, again, control, lights, draw.chosen));
   for (std::size_t j = 0; j < lights.size(); ++j) by_trace.lights[j] = {lights[j].position, fit.intensity[j]};
   std::vector<Eigen::Array3d> grown;
   for (std::size_t j = 0; j < lights.size(); ++j) {
