@@ -6,6 +6,7 @@
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/cross_shadow_edges.h"
 #include "inverse/solve/directly_lit.h"
+#include "inverse/solve/error_curve.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/further_light.h"
 #include "inverse/solve/instrumental_fit.h"
@@ -104,6 +105,21 @@ FreeLights free_lights(const Settling& with, const LightEstimates& lights, const
   }
   free.indirect = free.indirect_traced;
   return free;
+}
+
+// Those that share a place as one.
+LightEstimates each_place_once(const LightEstimates& lights) {
+  LightEstimates places;
+  for (const LightEstimate& light : lights) {
+    const auto same = std::find_if(places.begin(), places.end(),
+                                   [&](const LightEstimate& other) { return other.position == light.position; });
+    if (same == places.end()) {
+      places.push_back(light);
+    } else {
+      same->intensity += light.intensity;
+    }
+  }
+  return places;
 }
 
 // What the receivers drawn want of the free lights.
@@ -340,12 +356,22 @@ class Settler {
 LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& options,
                               const renderer::Control& control, const LightResponse& search, const Optimum& found,
                               StageClock& clock) {
-  LightEstimates lights;
-  for (const LightEstimate& light : found.lights) lights.push_back({light.position, light.intensity});
-  if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
-    return trace_lights(problem, options, control, lights, clock);
+  LightEstimates all;
+  for (const LightEstimate& light : found.lights) all.push_back({light.position, light.intensity});
+  LightEstimates lights = all;
+  SolveOptions apart = options;
+  if (options.exact_lights > 0 && found.held == 0) {
+    lights = each_place_once(all);
+    apart.exact_lights = int(lights.size());
   }
-  return Settler(problem, options, control, search, lights, found.held, clock).settle(lights);
+  if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
+    return trace_lights(problem, options, control, all, clock);
+  }
+  LightsByTrace settled = Settler(problem, apart, control, search, lights, found.held, clock).settle(lights);
+  if (lights.size() == all.size()) return settled;
+  settled.lights = as_many_as_asked_for(std::move(settled.lights), all.size());
+  settled.intervals.reset();
+  return settled;
 }
 
 }  // namespace chiaro::inverse

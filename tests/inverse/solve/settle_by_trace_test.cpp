@@ -110,6 +110,31 @@ TEST_F(SettleByTrace, WeightsMayBeGivenInAnyUnit) {
   }
 }
 
+// As many as asked for: those that share a place settle as one.
+TEST_F(SettleByTrace, LightsThatShareAPlaceSettleTogether) {
+  const LightEstimates known = known_lights(2);
+  LightEstimates start = displaced(known, 0.02);
+  for (const std::size_t j : {0, 0, 1}) {
+    start.push_back(start[j]);
+    start[j].intensity /= 2;
+    start.back().intensity = start[j].intensity;
+  }
+  SolveOptions options;
+  options.exact_lights = 5;
+  const LightsByTrace settled = settle(corner_.target(known, -1), start, options);
+  ASSERT_EQ(settled.lights.size(), 5U);
+  Eigen::Array3d all = Eigen::Array3d::Zero(), wanted = Eigen::Array3d::Zero();
+  for (const LightEstimate& light : settled.lights) {
+    double nearest = 1;
+    for (const LightEstimate& other : known) nearest = std::min(nearest, (light.position - other.position).norm());
+    EXPECT_LT(nearest, 0.012);
+    EXPECT_GT(light.intensity.maxCoeff(), 0);
+    all += light.intensity;
+  }
+  for (const LightEstimate& light : known) wanted += light.intensity;
+  EXPECT_LT((all / wanted - 1).abs().maxCoeff(), 0.02);
+}
+
 TEST_F(SettleByTrace, LightsFarFromTheirPlaceAreTracedAgain) {
   for (const std::size_t count : {std::size_t{2}, std::size_t{3}}) {
     const LightEstimates known = known_lights(count);
