@@ -63,14 +63,8 @@ class Search {
     if (options_.earlier.empty()) {
       refine_cuts();
       insert_lights();
-      eliminate_lights();
-      confirm_count();
-      grow_again();
-      if (exchange_lights()) {
-        eliminate_lights();
-        confirm_count();
-        grow_again();
-      }
+      tell_count();
+      if (exchange_lights()) tell_count();
     }
     for (const LightEstimates& lights : options_.earlier) {
       if (best_.size() < 2 || !out_of_time()) consider({lights});
@@ -131,7 +125,7 @@ class Search {
   }
 
   void keep(JointRefinement refined) {
-    std::erase_if(refined.lights, [](const LightEstimate& l) { return !(l.intensity > 0).any(); });
+    std::erase_if(refined.lights, is_dark);
     const std::size_t count = refined.lights.size();
     if (count == 0) return;
     if (best_.size() <= count) best_.resize(count + 1);
@@ -230,6 +224,12 @@ class Search {
     for (std::size_t size = best_.size() - 1; size > 1 && !out_of_time(); --size) {
       if (!best_[size].lights.empty()) consider(parents(best_[size].lights, 1));
     }
+  }
+
+  void tell_count() {
+    eliminate_lights();
+    confirm_count();
+    grow_again();
   }
 
   // A light may be there only to make good what the descent of the others left undone: with one light less, and down to

@@ -25,7 +25,7 @@ void put_in_curve(LightSet set, std::vector<LightSet>& curve) {
 }
 
 LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
-  std::erase_if(lights, [](const LightEstimate& light) { return !(light.intensity > 0).any(); });
+  std::erase_if(lights, is_dark);
   while (!lights.empty() && lights.size() < count) {
     const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
       return a.intensity.sum() < b.intensity.sum();

@@ -46,9 +46,10 @@ class FillingUp {
 
   // At the candidate that explains most of what is left, all others staying where they are.
   bool add_beside(LightEstimates& lights) const {
+    const std::vector<Vector3d> positions = positions_of(lights);
     LightEstimates fitting;
     for (const Vector3d& candidate : candidates_) {
-      if (fits_in(positions_of(lights), candidate)) fitting.push_back({candidate, Eigen::Array3d::Zero()});
+      if (fits_in(positions, candidate)) fitting.push_back({candidate, Eigen::Array3d::Zero()});
     }
     if (fitting.empty()) return false;
     if (limits_.clock.out_of_time()) fitting.resize(1);
@@ -126,10 +127,8 @@ class FillingUp {
 
 void light_the_dark(LightEstimates& lights) {
   for (LightEstimate& light : lights) {
-    if ((light.intensity > 0).any()) continue;
-    const auto brightest = std::max_element(lights.begin(), lights.end(), [](const auto& a, const auto& b) {
-      return a.intensity.maxCoeff() < b.intensity.maxCoeff();
-    });
+    if (!is_dark(light)) continue;
+    const auto brightest = brightest_light(lights);
     light.intensity = kShare * brightest->intensity;
     brightest->intensity *= 1 - kShare;
   }
@@ -137,7 +136,7 @@ void light_the_dark(LightEstimates& lights) {
 
 LightEstimates filled_up(const LightResponse& response, const Observations& observations, LightEstimates lights,
                          std::size_t wanted, const FillUpLimits& limits) {
-  std::erase_if(lights, [](const LightEstimate& light) { return !(light.intensity > 0).any(); });
+  std::erase_if(lights, is_dark);
   if (lights.size() >= wanted) return lights;
   return FillingUp(response, observations, limits).fill_up(std::move(lights), wanted);
 }

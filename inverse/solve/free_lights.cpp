@@ -1,7 +1,5 @@
 #include "inverse/solve/free_lights.h"
 
-#include <algorithm>
-
 namespace chiaro::inverse {
 
 FreeLights without(FreeLights free, const std::vector<std::size_t>& gone) {
@@ -19,10 +17,8 @@ FreeLights without(FreeLights free, const std::vector<std::size_t>& gone) {
 
 void let_the_dark_share(FreeLights& free) {
   for (std::size_t j = 0; j < free.now.size(); ++j) {
-    if ((free.now[j].intensity > 0).any()) continue;
-    const auto brightest = std::max_element(free.now.begin(), free.now.end(), [](const auto& a, const auto& b) {
-      return a.intensity.maxCoeff() < b.intensity.maxCoeff();
-    });
+    if (!is_dark(free.now[j])) continue;
+    const auto brightest = brightest_light(free.now);
     brightest->intensity /= 2;
     const auto shared = std::size_t(brightest - free.now.begin());
     free.traced[j] = free.traced[shared];

@@ -53,19 +53,16 @@ void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
   for (Vec3f& value : traced.all.value) value = max(value, Vec3f{});  // what was taken off may be more, by rounding
 }
 
-bool any_dark(const LightEstimates& lights) {
-  return std::any_of(lights.begin(), lights.end(), [](const auto& light) { return !(light.intensity > 0).any(); });
-}
-
 // As many lights: where they may share places the trace remains what it is.
 LightsByTrace with_none_dark(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
                              LightsByTrace by_trace, StageClock& clock) {
   const std::size_t count = by_trace.lights.size();
-  LightEstimates lit = may_share_places(problem) ? as_many_as_asked_for(by_trace.lights, count) : by_trace.lights;
-  if (lit.size() < count) return by_trace;
-  light_the_dark(lit);
-  if (!may_share_places(problem)) return trace_lights(problem, options, control, lit, clock);
-  by_trace.lights = std::move(lit);
+  if (!may_share_places(problem)) {
+    light_the_dark(by_trace.lights);
+    return trace_lights(problem, options, control, by_trace.lights, clock);
+  }
+  LightEstimates lit = as_many_as_asked_for(by_trace.lights, count);
+  if (lit.size() == count) by_trace.lights = std::move(lit);
   return by_trace;
 }
 
@@ -112,7 +109,7 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   by_trace.settling_seconds = clock.finish(
       "intensities", {{"relative_l2", relative_error(observations, total_illumination(unity, fit.intensity,
                                                                                       observations.wanted.rows()))}});
-  if (options.exact_lights > 0 && any_dark(by_trace.lights))
+  if (options.exact_lights > 0 && std::any_of(by_trace.lights.begin(), by_trace.lights.end(), is_dark))
     return with_none_dark(problem, options, control, std::move(by_trace), clock);
   return by_trace;
 }

@@ -45,6 +45,11 @@ double typical(const Eigen::VectorXd& standard_error) {
 
 }  // namespace
 
+LightEstimates::iterator brightest_light(LightEstimates& lights) {
+  return std::max_element(lights.begin(), lights.end(),
+                          [](const auto& a, const auto& b) { return a.intensity.maxCoeff() < b.intensity.maxCoeff(); });
+}
+
 renderer::PointLight point_light(const LightEstimate& estimate) {
   renderer::PointLight light;
   light.position = to_vec3f(estimate.position);

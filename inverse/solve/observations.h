@@ -61,6 +61,11 @@ struct LightEstimate {
 };
 using LightEstimates = std::vector<LightEstimate>;
 
+inline bool is_dark(const LightEstimate& light) { return !(light.intensity > 0).any(); }
+
+// By its brightest channel; end() of none.
+LightEstimates::iterator brightest_light(LightEstimates& lights);
+
 renderer::PointLight point_light(const LightEstimate& estimate);
 renderer::Lights point_lights(const LightEstimates& estimates);
 LightEstimates light_estimates(const std::vector<renderer::PointLight>& lights);

@@ -151,7 +151,7 @@ int most_lights(const SolveOptions& options) {
 }
 
 bool ties_lights_together(const SolveProblem& problem) {
-  return problem.intensities.any() || problem.places.light_distance > 0;
+  return problem.intensities.any() || !may_share_places(problem);
 }
 
 bool may_share_places(const SolveProblem& problem) { return !(problem.places.light_distance > 0); }

@@ -91,7 +91,7 @@ void report_lights(const SolveProblem& problem, const SolveOptions& options, con
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
   if (!(total > 0)) all_dark(problem, response, lights);
   std::vector<std::size_t> order = all_indices(lights.size());
-  if (options.exact_lights == 0) std::erase_if(order, [&](std::size_t j) { return !(lights[j].intensity > 0).any(); });
+  if (options.exact_lights == 0) std::erase_if(order, [&](std::size_t j) { return is_dark(lights[j]); });
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   std::vector<int> number(lights.size());
   for (const std::size_t j : order) {
@@ -128,7 +128,6 @@ void require_all_lights(const SolveProblem& problem, const SolveOptions& options
                         const LightEstimates& found) {
   const int wanted = std::max(1, options.exact_lights);
   if (int(found.size()) < wanted) too_crowded(problem, wanted);
-  const auto is_dark = [](const LightEstimate& light) { return !(light.intensity > 0).any(); };
   if (std::all_of(found.begin(), found.end(), is_dark)) all_dark(problem, response, found);
 }
 
