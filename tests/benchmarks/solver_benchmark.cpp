@@ -144,8 +144,10 @@ void add_case(Row& row, const Measurement& with, const std::vector<PointLight>& 
 
 void print_case(std::size_t set, const Measurement& with, const std::vector<PointLight>& truth,
                 const SolveResult& result, double beyond) {
-  std::printf("  set %zu: %zu found, %.2f %% beyond noise\n", set, result.lights.size(), 100 * beyond);
   const Distances distances = match(truth, result.lights, with.stage.diagonal);
+  std::printf("  set %zu: %zu found, %.2f %% beyond noise, %zu of %zu intervals hold, %.2f s\n", set,
+              result.lights.size(), 100 * beyond, distances.inside, distances.parameters,
+              result.initial_seconds + result.optimal_seconds);
   for (std::size_t k = 0; k < distances.position.size(); ++k) {
     std::printf("    light %zu: %.3f %% off, intensity %.2f %%\n", k + 1, 100 * distances.position[k],
                 100 * distances.intensity[k]);
