@@ -1,14 +1,8 @@
 #pragma once
 
-#include <functional>
-
-#include "inverse/solve/free_lights.h"
-#include "inverse/solve/settling_bench.h"
+#include "inverse/solve/carry_along.h"
 
 namespace chiaro::inverse {
-
-// Light by bounces becomes that of where the lights are now, and they come down once more.
-using CarryAlong = std::function<void(FreeLights&)>;
 
 // Those go without which the others, which come down again, explain as much; one always stays. Fewer lights that come
 // near that are carried along before they are given up; carry_along: empty where lights are on their way. Returns how

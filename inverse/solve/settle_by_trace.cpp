@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/solve/carry_along.h"
 #include "inverse/solve/cross_shadow_edges.h"
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/error_curve.h"
@@ -236,10 +237,12 @@ class Settler {
       const SettlingBench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced)};
       if (any_hidden(bench, free)) return by_trace;
       descend(bench, free);
-      const bool rests = at_rest(bench, free, kCarried * with_.near);
-      const auto carried_along = [&](FreeLights& lights_now) { carry_along_with(bench, first, lights, lights_now); };
-      if (rests && !at_rest(bench, free, kVeryNear * with_.near)) carried_along(free);
-      LightIntervals intervals = only_needed(bench, rests ? CarryAlong(carried_along) : nullptr, free);
+      const CarryAlong carried_along = [&](FreeLights& now) { carry_along_with(bench, first, lights, now); };
+      const bool last = round == kRounds + further_lights_;
+      const bool rests =
+          at_rest(bench, free, kCarried * with_.near) &&
+          (at_rest(bench, free, kVeryNear * with_.near) || come_along(bench, carried_along, free) || last);
+      LightIntervals intervals = only_needed(bench, rests ? carried_along : nullptr, free);
       if (rests && add_further(bench, free, lights)) continue;
       lights = joined(with_, lights, free);
       if (rests) {
@@ -249,7 +252,7 @@ class Settler {
       }
       finish("settling", lights.size(), rests);
       by_trace.settling_seconds = seconds_;
-      if (rests || round == kRounds + further_lights_ || out_of_time()) return by_trace;
+      if (rests || last || out_of_time()) return by_trace;
     }
   }
 

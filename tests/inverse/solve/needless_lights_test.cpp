@@ -82,6 +82,23 @@ TEST_F(NeedlessLights, FewerAreJudgedByTheirLightByBouncesWhereTheyStand) {
   EXPECT_EQ(free.number, (std::vector<std::size_t>{0, 1}));
 }
 
+// Where few paths tell how a light's bright spot on a wall nearby changed it is noise.
+TEST_F(NeedlessLights, WhatIsMostlyNoiseIsNotCarriedAlong) {
+  const double amplitude = direct(known_[0]).norm() / noise_.norm();
+  const auto carried_with_noise = [&](double part) {
+    return [&, part](FreeLights& free) {
+      free.indirect[0] += part * amplitude * noise_ * known_[0].intensity.inverse().matrix().asDiagonal();
+      bench_.descend(free.indirect, free.now);
+    };
+  };
+  FreeLights free = standing(known_);
+  EXPECT_FALSE(come_along(bench_, carried_with_noise(0.3), free));
+  EXPECT_EQ(free.indirect[0].norm(), 0);
+  EXPECT_EQ(positions_of(free.now), positions_of(known_));
+  EXPECT_TRUE(come_along(bench_, carried_with_noise(0.001), free));
+  EXPECT_GT(free.indirect[0].norm(), 0);
+}
+
 TEST(FreeLights, WithoutSomeKeepTheOthersTogether) {
   FreeLights free;
   for (std::size_t j = 0; j < 4; ++j) {
