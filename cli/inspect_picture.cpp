@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include "cli/inspect.h"
 #include "cli/memory.h"
 #include "inverse/transport/transport_cache.h"
+#include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
 
 namespace chiaro::cli {
@@ -128,7 +130,33 @@ bool fits_in_memory(const TransportCache& header) {
   return kBytesPerEntry * double(header.receiver_count) * double(header.grid.positions.size()) < memory_bytes() / 2;
 }
 
+// Its last entry tells whether it is whole.
+void require_whole_part(inverse::TransportCacheReader& part, const std::string& file) {
+  inverse::TransportBlock last{.first_light = part.header().grid.positions.size() - 1,
+                               .light_count = 1,
+                               .first_receiver = part.last_receiver() - 1,
+                               .receiver_count = 1,
+                               .visibility = {},
+                               .indirect = {}};
+  if (!part.read(last)) throw renderer::Error({file, "", "cut short or damaged", "a whole part of a cache"});
+}
+
+// Absent: it is a cache, whole or not.
+std::optional<Inspection> inspect_part(const std::string& file) {
+  if (!renderer::ExrTileReader::is_tiled(file)) return std::nullopt;
+  inverse::TransportCacheReader part(file);
+  const std::size_t first = part.first_receiver(), last = part.last_receiver(), all = part.header().receiver_count;
+  if (first == 0 && last == all) return std::nullopt;
+  require_whole_part(part, file);
+  Inspection inspection = start_inspection("part of a transport cache", file);
+  inspection.add("part", JsonObject{{"first_receiver", first}, {"last_receiver", last - 1}}, "part",
+                 fmt::format("receivers {} to {} of {}, for `chiaro merge`", first, last - 1, all));
+  add_cache_header(inspection, part.header());
+  return inspection;
+}
+
 Inspection inspect_cache(const std::string& file) {
+  if (auto part = inspect_part(file)) return *std::move(part);
   const TransportCache header = inverse::load_transport_cache_header(file);
   Inspection inspection = start_inspection("transport cache", file);
   add_cache_header(inspection, header);

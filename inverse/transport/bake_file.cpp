@@ -18,7 +18,10 @@ namespace fs = std::filesystem;
 using renderer::Error;
 
 constexpr std::size_t kBand = TransportCacheWriter::kLights;
-constexpr std::size_t kColumns = 8 * TransportCacheWriter::kMostReceivers;  // copied at once
+constexpr std::size_t kColumns = 8 * TransportCacheWriter::kMostReceivers;  // copied at once, or more …
+constexpr std::size_t kMostEntries = std::size_t{1} << 22;                  // … of larger tiles, up to so many
+
+using Parts = std::span<const std::unique_ptr<TransportCacheReader>>;
 
 struct Range {
   std::size_t first, last;
@@ -35,31 +38,97 @@ Range receivers_of(Shard shard, const TransportCache& header) {
                fmt::format("{} receivers do not make {} parts", header.receiver_count, shard.count), "fewer parts"});
 }
 
-// Copies tiles of some lights and receivers; returns the first receiver that could not be read, or range.last.
-std::size_t copy_tiles(TransportCacheReader& from, std::size_t first_light, Range range, std::size_t columns,
-                       TransportCacheWriter& to, const renderer::Control& control) {
-  for (std::size_t receiver = range.first; receiver < range.last; receiver += columns) {
-    if (control.stop_requested()) throw renderer::Interruption();
-    TransportBlock block;
-    block.first_light = first_light;
-    block.light_count = std::min(kBand, from.header().grid.positions.size() - first_light);
-    block.first_receiver = receiver, block.receiver_count = std::min(columns, range.last - receiver);
-    if (!from.read(block)) return receiver;
-    to.write(block);
+// How much is copied at once, in whole tiles of the writer.
+struct Step {
+  std::size_t lights, receivers;
+};
+
+// So that tiles of any size are decoded once or twice, where memory allows: several bands only with all receivers, as
+// the writer wants them.
+Step step_for(Parts parts, Range range) {
+  const std::size_t lights = parts.front()->header().grid.positions.size(), all = range.last - range.first;
+  std::size_t tile_lights = 1, tile_receivers = 1;
+  for (const auto& part : parts) {
+    tile_lights = std::max(tile_lights, std::min(part->lights_of_tile(), lights));
+    tile_receivers = std::max(tile_receivers, part->receivers_of_tile());
   }
-  return range.last;
+  const std::size_t bands = std::min((tile_lights + kBand - 1) / kBand, kMostEntries / kBand / all);
+  if (bands > 1) return {bands * kBand, all};
+  constexpr std::size_t kTile = TransportCacheWriter::kMostReceivers;
+  const std::size_t most = kMostEntries / std::min(lights, kBand);
+  return {kBand, std::clamp(tile_receivers, kColumns, most) / kTile * kTile};
 }
 
-// What an unfinished bake has. Returns where it ends.
-Baker::Place take_over(TransportCacheReader& old, Range range, TransportCacheWriter& writer,
-                       const renderer::Control& control) {
-  const std::size_t lights = old.header().grid.positions.size();
-  for (std::size_t light = 0; light < lights; light += kBand) {
-    const std::size_t end = copy_tiles(old, light, range, kColumns, writer, control);
-    if (end == range.last) continue;
-    return {light, copy_tiles(old, light, {end, range.last}, old.receivers_of_tile(), writer, control)};
+void put_into(TransportBlock& block, const TransportBlock& piece) {
+  for (std::size_t light = 0; light < piece.light_count; ++light) {
+    const auto from = std::ptrdiff_t(light * piece.receiver_count);
+    const auto to = std::ptrdiff_t(light * block.receiver_count + piece.first_receiver - block.first_receiver);
+    std::copy_n(piece.visibility.begin() + from, piece.receiver_count, block.visibility.begin() + to);
+    std::copy_n(piece.indirect.begin() + from, piece.receiver_count, block.indirect.begin() + to);
   }
-  return {lights, range.first};
+}
+
+// Fills the block from the parts that have its receivers; returns the first that lacks some of them, or nullptr.
+const TransportCacheReader* read(Parts parts, TransportBlock& block) {
+  block.resize();
+  for (const auto& part : parts) {
+    TransportBlock piece;
+    piece.first_light = block.first_light, piece.light_count = block.light_count;
+    piece.first_receiver = std::max(block.first_receiver, part->first_receiver());
+    const std::size_t last = std::min(block.first_receiver + block.receiver_count, part->last_receiver());
+    if (piece.first_receiver >= last) continue;
+    piece.receiver_count = last - piece.first_receiver;
+    if (!part->read(piece)) return part.get();
+    put_into(block, piece);
+  }
+  return nullptr;
+}
+
+// From parts that together have the range.
+struct Copy {
+  Parts from;
+  Range range;
+  TransportCacheWriter& to;
+  const renderer::Control& control;
+};
+
+struct Damage {
+  Baker::Place place;
+  const TransportCacheReader* part;  // nullptr: none
+};
+
+// Copies from `start` to the end, or to what cannot be read.
+Damage copy_entries(const Copy& copy, Baker::Place start, Step step) {
+  const std::size_t lights = copy.from.front()->header().grid.positions.size();
+  Baker::Place at = start;
+  for (; at.light < lights; at = {at.light + step.lights, copy.range.first}) {
+    for (; at.receiver < copy.range.last; at.receiver += step.receivers) {
+      if (copy.control.stop_requested()) throw renderer::Interruption();
+      TransportBlock block;
+      block.first_light = at.light, block.light_count = std::min(step.lights, lights - at.light);
+      block.first_receiver = at.receiver;
+      block.receiver_count = std::min(step.receivers, copy.range.last - at.receiver);
+      if (const TransportCacheReader* damaged = read(copy.from, block)) return {at, damaged};
+      copy.to.write(block);
+    }
+    const double done = double(std::min(at.light + step.lights, lights)) / double(lights);
+    if (copy.control.report) copy.control.report("merge", done);
+  }
+  return {at, nullptr};
+}
+
+// What an unfinished bake has, to the last tile of the writer. Returns where it ends.
+Baker::Place take_over(Parts old, Range range, TransportCacheWriter& writer, const renderer::Control& control) {
+  const renderer::Control quiet = control.without_progress();
+  const std::size_t lights = old.front()->header().grid.positions.size();
+  const std::size_t tile = TransportCacheWriter::receivers_of_tile(lights);
+  Step step = step_for(old, range);
+  Damage end = copy_entries({old, range, writer, quiet}, {0, range.first}, step);
+  while (end.part != nullptr && (step.lights > kBand || step.receivers > tile)) {
+    step = {kBand, std::max(tile, step.receivers / 2 / tile * tile)};
+    end = copy_entries({old, range, writer, quiet}, end.place, step);
+  }
+  return end.place;
 }
 
 // nullptr: it ends within its header, and has nothing.
@@ -105,7 +174,7 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
     bake.writer = begin_anew(unfinished, header, range);
     return;
   }
-  TransportCacheReader& old = *unfinished_cache;
+  const TransportCacheReader& old = *unfinished_cache;
   if (!old.is_of(header) || old.first_receiver() != range.first || old.last_receiver() != range.last) {
     throw Error({unfinished.string(), "header", "of another scene or of a bake with other options",
                  "the same again, or no --resume"});
@@ -113,7 +182,7 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
   const fs::path aside = unfinished.string() + ".new";
   try {
     Unfinished next{replace_idle_file(aside), begin_anew(aside, header, range)};
-    start = take_over(old, range, *next.writer, control);
+    start = take_over(Parts(&unfinished_cache, 1), range, *next.writer, control);
     std::error_code renamed;
     fs::rename(aside, unfinished, renamed);
     if (renamed) throw Error({unfinished.string(), "", "cannot be written: " + renamed.message(), ""});
@@ -195,19 +264,14 @@ void merge_transport_caches(std::span<const fs::path> files, const fs::path& out
   const auto shards = open_shards(files);
   require_all(shards);
   const TransportCache& header = shards.front()->header();
-  const std::size_t lights = header.grid.positions.size();
+  const Range all{0, header.receiver_count};
   renderer::write_atomically(output, [&](const fs::path& aside) {
-    TransportCacheWriter writer(aside, header, 0, header.receiver_count);
-    for (std::size_t light = 0; light < lights; light += kBand) {
-      for (const auto& shard : shards) {
-        const Range range{shard->first_receiver(), shard->last_receiver()};
-        const std::size_t end = copy_tiles(*shard, light, range, kColumns, writer, control);
-        if (end < range.last) {
-          throw Error(
-              {shard->path().string(), fmt::format("receiver {}", end), "cut short or damaged", "a whole file"});
-        }
-      }
-      if (control.report) control.report("merge", double(std::min(light + kBand, lights)) / double(lights));
+    TransportCacheWriter writer(aside, header, all.first, all.last);
+    const Damage damage = copy_entries({shards, all, writer, control}, {0, all.first}, step_for(shards, all));
+    if (damage.part != nullptr) {
+      throw Error({damage.part->path().string(),
+                   fmt::format("receiver {}", std::max(damage.place.receiver, damage.part->first_receiver())),
+                   "cut short or damaged", "a whole file"});
     }
     writer.close();
   });

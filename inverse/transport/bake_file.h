@@ -27,8 +27,8 @@ std::filesystem::path unfinished_bake(const std::filesystem::path& file);
 BakeSummary bake_to_file(Baker& baker, const std::filesystem::path& file, const BakeFileOptions& options,
                          const renderer::Control& control);
 
-// Joins shards, in any order, to the bytes of a bake in one go. Error where they are not of one bake, or one is missing
-// or cut short.
+// Joins shards, in any order and with tiles of any size, to the bytes of a bake in one go. Error where they are not of
+// one bake, or one is missing or cut short.
 void merge_transport_caches(std::span<const std::filesystem::path> shards, const std::filesystem::path& output,
                             const renderer::Control& control);
 

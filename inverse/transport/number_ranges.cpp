@@ -31,7 +31,7 @@ std::string format_number_ranges(const std::vector<int>& numbers) {
   return text;
 }
 
-std::optional<std::vector<int>> parse_number_ranges(const std::string& text) {
+std::optional<std::vector<int>> parse_number_ranges(const std::string& text, std::size_t most) {
   std::vector<int> numbers;
   const char* at = text.data();
   const char* end = at + text.size();
@@ -40,7 +40,7 @@ std::optional<std::vector<int>> parse_number_ranges(const std::string& text) {
     if (!first || (!numbers.empty() && *first <= numbers.back())) return std::nullopt;
     auto last = first;
     if (at != end && *at == '-') last = take_number(++at, end);
-    if (!last || *last < *first) return std::nullopt;
+    if (!last || *last < *first || std::size_t(*last - *first) >= most - numbers.size()) return std::nullopt;
     for (int n = *first; n <= *last; ++n) numbers.push_back(n);
     if (at != end && (*at++ != ',' || at == end)) return std::nullopt;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@ namespace chiaro::inverse {
 // Ascending whole numbers ≥ 0 as text: {0, 1, 2, 7} is "0-2,7".
 std::string format_number_ranges(const std::vector<int>& numbers);
 
-// The way back; absent where the text is malformed or not ascending.
-std::optional<std::vector<int>> parse_number_ranges(const std::string& text);
+// The way back; absent where the text is malformed, not ascending, or of more than `most` numbers.
+std::optional<std::vector<int>> parse_number_ranges(const std::string& text, std::size_t most);
 
 }  // namespace chiaro::inverse

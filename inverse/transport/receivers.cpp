@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -48,6 +49,27 @@ std::size_t vertex_count(const std::vector<SurfaceMesh>& meshes) {
   std::size_t count = 0;
   for (const SurfaceMesh& mesh : meshes) count += mesh.positions.size();
   return count;
+}
+
+std::size_t used_vertex_count(const renderer::Mesh& mesh) {
+  std::vector<bool> used(mesh.positions.size());
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) used[vertex] = true;
+  }
+  return std::size_t(std::count(used.begin(), used.end(), true));
+}
+
+// Before memory is taken for every instance of a mesh.
+void check_own_vertices(const renderer::Scene& scene) {
+  std::vector<double> of_mesh;
+  for (const renderer::Mesh& mesh : scene.meshes) of_mesh.push_back(double(used_vertex_count(mesh)));
+  double count = 0;
+  for (const renderer::Instance& instance : scene.instances) count += of_mesh[instance.mesh];
+  if (count <= kMostReceivers) return;
+  throw renderer::Error(
+      {scene.path, "receivers",
+       fmt::format("the scene's own vertices, of {} instances, are {:.0f}", scene.instances.size(), count),
+       fmt::format("at most {:.0f}: fewer instances or simpler meshes", kMostReceivers)});
 }
 
 std::vector<SurfaceMesh> split_all(std::vector<SurfaceMesh> meshes, float max_edge) {
@@ -195,6 +217,7 @@ void repair_normals(Receivers& r) {
 }  // namespace
 
 Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options) {
+  check_own_vertices(scene);
   std::vector<SurfaceMesh> meshes;
   for (const renderer::Instance& instance : scene.instances) meshes.push_back(world_mesh(scene, instance));
   if (vertex_count(meshes) == 0) {

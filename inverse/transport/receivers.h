@@ -35,7 +35,8 @@ struct ReceiverOptions {
   float max_edge = 0;  // metres; 0: from the scene's size, for 20 000 to 50 000 receivers
 };
 
-// Never fewer than the scene's own vertices that triangles use. Error for a scene without triangles.
+// Never fewer than the scene's own vertices that triangles use. Error for a scene without triangles, and before
+// memory is taken for one whose instances have more vertices than receivers may be.
 Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options);
 
 // The vertices of a mesh file, whoever wrote it.

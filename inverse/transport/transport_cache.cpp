@@ -18,6 +18,8 @@ namespace {
 using renderer::Attributes;
 using renderer::Error;
 
+constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 22;  // that are read
+
 // As OpenEXR orders them.
 const std::vector<std::string> kChannels{"indirect.B", "indirect.G", "indirect.R", "visibility"};
 
@@ -66,37 +68,57 @@ struct Run {
   std::size_t column, wanted;
 };
 
-// Ascending receivers in whole tiles.
-std::vector<Run> runs_of(std::span<const std::size_t> receivers, std::size_t tile, std::size_t all) {
+// Ascending receivers, those of a tile together as far as memory allows for as many lights as it has.
+std::vector<Run> runs_of(std::span<const std::size_t> receivers, const TransportCacheReader& reader) {
   constexpr std::size_t kMost = 256;
+  const std::size_t lights = std::min(reader.lights_of_tile(), reader.header().grid.positions.size());
+  const std::size_t tile = reader.receivers_of_tile(), most_of_tile = std::max<std::size_t>(1, kEntriesAtOnce / lights);
   std::vector<Run> runs;
   for (std::size_t i = 0; i < receivers.size(); ++i) {
-    const std::size_t first = receivers[i] / tile * tile, last = std::min(first + tile, all);
-    if (!runs.empty() && first <= runs.back().last && last - runs.back().first <= kMost) {
-      runs.back().last = last;
+    const std::size_t from_tile = runs.empty() ? 0 : receivers[i] / tile - (runs.back().last - 1) / tile;
+    const std::size_t most = from_tile == 0 ? most_of_tile : from_tile == 1 ? std::min(kMost, most_of_tile) : 0;
+    if (!runs.empty() && receivers[i] - runs.back().first < most) {
+      runs.back().last = receivers[i] + 1;
       ++runs.back().wanted;
     } else {
-      runs.push_back({first, last, i, 1});
+      runs.push_back({receivers[i], receivers[i] + 1, i, 1});
     }
   }
   return runs;
 }
 
+// Lights that are read at once of so many receivers: whole tiles.
+std::size_t lights_at_once(const TransportCacheReader& reader, std::size_t receivers) {
+  const std::size_t tile = reader.lights_of_tile();
+  return std::max(tile, kEntriesAtOnce / receivers / tile * tile);
+}
+
+// receivers: those wanted of the run.
+void copy_columns(const TransportBlock& block, std::span<const std::size_t> receivers, std::size_t column,
+                  TransportCache& cache) {
+  for (std::size_t light = 0; light < block.light_count; ++light) {
+    for (std::size_t k = 0; k < receivers.size(); ++k) {
+      const std::size_t from = light * block.receiver_count + receivers[k] - block.first_receiver;
+      const std::size_t to = (block.first_light + light) * cache.receiver_count + column + k;
+      cache.visibility[to] = block.visibility[from];
+      cache.indirect[to] = block.indirect[from];
+    }
+  }
+}
+
 void read_tiles(TransportCacheReader& reader, std::span<const std::size_t> receivers, const std::string& name,
                 TransportCache& cache) {
-  TransportBlock block;
-  block.light_count = cache.grid.positions.size();
-  for (const Run& run : runs_of(receivers, reader.receivers_of_tile(), reader.last_receiver())) {
+  const std::size_t lights = cache.grid.positions.size();
+  for (const Run& run : runs_of(receivers, reader)) {
+    TransportBlock block;
     block.first_receiver = run.first, block.receiver_count = run.last - run.first;
-    if (!reader.read(block)) {
-      throw Error({name, fmt::format("receiver {}", run.first), "cut short or damaged", "a whole file"});
-    }
-    for (std::size_t k = run.column; k < run.column + run.wanted; ++k) {
-      for (std::size_t light = 0; light < block.light_count; ++light) {
-        const std::size_t from = light * block.receiver_count + receivers[k] - run.first;
-        cache.visibility[light * cache.receiver_count + k] = block.visibility[from];
-        cache.indirect[light * cache.receiver_count + k] = block.indirect[from];
+    const std::size_t step = lights_at_once(reader, block.receiver_count);
+    for (std::size_t light = 0; light < lights; light += step) {
+      block.first_light = light, block.light_count = std::min(step, lights - light);
+      if (!reader.read(block)) {
+        throw Error({name, fmt::format("receiver {}", run.first), "cut short or damaged", "a whole file"});
       }
+      copy_columns(block, receivers.subspan(run.column, run.wanted), run.column, cache);
     }
   }
 }
@@ -115,12 +137,9 @@ void read_scanlines(const std::filesystem::path& path, std::span<const std::size
 
 // All receivers, to the last tile: it is the last that is written.
 void require_whole(TransportCacheReader& reader, const std::string& name) {
-  const std::size_t lights = reader.header().grid.positions.size();
   TransportBlock last;
-  last.first_light = (lights - 1) / reader.lights_of_tile() * reader.lights_of_tile();
-  last.light_count = lights - last.first_light;
-  last.first_receiver = (reader.last_receiver() - 1) / reader.receivers_of_tile() * reader.receivers_of_tile();
-  last.receiver_count = reader.last_receiver() - last.first_receiver;
+  last.first_light = reader.header().grid.positions.size() - 1, last.light_count = 1;
+  last.first_receiver = reader.last_receiver() - 1, last.receiver_count = 1;
   if (!reader.read(last)) throw Error({name, "", "cut short or damaged", "a whole file"});
   if (reader.first_receiver() == 0 && reader.last_receiver() == reader.header().receiver_count) return;
   throw Error({name, "header",
@@ -129,12 +148,22 @@ void require_whole(TransportCacheReader& reader, const std::string& name) {
                "a whole one: join the parts with `chiaro merge`"});
 }
 
-void require_room_for_entries(const TransportCache& cache, const std::filesystem::path& path) {
+// Before memory is taken for what the header says of each light.
+void require_room_for_entries(std::size_t lights, std::size_t receivers, const std::filesystem::path& path) {
   constexpr std::size_t kEntryBytes = 8;
-  const std::size_t entries = cache.grid.positions.size() * cache.receiver_count;
-  if (renderer::may_hold(std::filesystem::file_size(path), kEntryBytes * entries)) return;
+  const std::size_t entries = lights * receivers;
+  std::error_code no_size;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, no_size);
+  if (no_size || renderer::may_hold(bytes, kEntryBytes * entries)) return;
   throw Error({path.string(), "header", fmt::format("has more entries ({}) than such a file can hold", entries),
                "a whole file"});
+}
+
+// Of a file of tiles.
+TransportCache header_of(const renderer::ExrTileReader& file) {
+  const renderer::ExrTiles& shape = file.shape();
+  require_room_for_entries(std::size_t(shape.height), std::size_t(shape.last_column - shape.first_column), file.path());
+  return transport_cache_from(file.attributes(), shape.width, shape.height, file.path().string());
 }
 
 }  // namespace
@@ -168,21 +197,17 @@ void TransportCacheWriter::write(const TransportBlock& block) {
     const float pixel[4] = {stored.z, stored.y, stored.x, block.visibility[i] != 0 ? 1.0F : 0.0F};
     std::copy_n(pixel, 4, &pixels[4 * i]);
   }
-  file_.write(int(block.first_light / kLights), int(block.first_receiver),
-              int(block.first_receiver + block.receiver_count), pixels);
+  for (std::size_t light = 0; light < block.light_count; light += kLights) {
+    const std::size_t lights = std::min(kLights, block.light_count - light), row = 4 * block.receiver_count;
+    file_.write(int((block.first_light + light) / kLights), int(block.first_receiver),
+                int(block.first_receiver + block.receiver_count), std::span(pixels).subspan(light * row, lights * row));
+  }
 }
 
 void TransportCacheWriter::close() { file_.close(); }
 
 TransportCacheReader::TransportCacheReader(const std::filesystem::path& path)
-    : file_(path),
-      header_(transport_cache_from(file_.attributes(), file_.shape().width, file_.shape().height, path.string())),
-      channels_(find_channels(file_.shape().channels, path.string())) {
-  const renderer::ExrTiles& shape = file_.shape();
-  if (shape.first_column % shape.tile_width != 0) {
-    throw Error({path.string(), "header", "begins within a tile", kNotACache});
-  }
-}
+    : file_(path), header_(header_of(file_)), channels_(find_channels(file_.shape().channels, path.string())) {}
 
 bool TransportCacheReader::is_of(const TransportCache& header) const {
   const Attributes expected = transport_cache_attributes(header);
@@ -193,14 +218,10 @@ bool TransportCacheReader::is_of(const TransportCache& header) const {
 }
 
 bool TransportCacheReader::read(TransportBlock& block) {
-  const renderer::ExrTiles& shape = file_.shape();
-  CHIARO_CHECK(block.first_light % std::size_t(shape.tile_height) == 0);
   block.resize();
-  const std::size_t tile_height = std::size_t(shape.tile_height), width = shape.channels.size();
-  const std::size_t row = block.first_light / tile_height;
-  const std::size_t rows = (block.light_count + tile_height - 1) / tile_height;
+  const std::size_t width = file_.shape().channels.size();
   std::vector<float> pixels(width * block.visibility.size());
-  if (!file_.read(int(row), int(row + rows), int(block.first_receiver),
+  if (!file_.read(int(block.first_light), int(block.first_light + block.light_count), int(block.first_receiver),
                   int(block.first_receiver + block.receiver_count), pixels)) {
     return false;
   }
@@ -218,6 +239,7 @@ TransportCache load_transport_cache_header(const std::filesystem::path& path) {
     return reader.header();
   }
   const renderer::ImageFile file = renderer::load_image_header(path);
+  require_room_for_entries(std::size_t(file.image.height), std::size_t(file.image.width), path);
   return transport_cache_from(file.attributes, file.image.width, file.image.height, path.string());
 }
 
@@ -231,7 +253,6 @@ TransportCache load_transport_cache(const std::filesystem::path& path,
     receivers = all;
   }
   cache.receiver_count = receivers->size();
-  require_room_for_entries(cache, path);
   cache.visibility.resize(cache.grid.positions.size() * receivers->size());
   cache.indirect.resize(cache.visibility.size());
   if (renderer::ExrTileReader::is_tiled(path)) {

@@ -60,7 +60,7 @@ class TransportCacheWriter {
   // in files of their own.
   TransportCacheWriter(const std::filesystem::path& path, const TransportCache& header, std::size_t first_receiver,
                        std::size_t last_receiver);
-  // Whole tiles, of lights that share one: in the order of lights, then of receivers.
+  // Whole tiles, in the order of lights, then of receivers: all receivers where there are more than kLights lights.
   void write(const TransportBlock& block);
   void close();
 
@@ -69,7 +69,7 @@ class TransportCacheWriter {
   renderer::ExrTileWriter file_;
 };
 
-// What a file has of a cache. Reads files that were not finished, as far as they go.
+// What a file has of a cache, whatever the size of its tiles. Reads files that were not finished, as far as they go.
 class TransportCacheReader {
  public:
   // Error where it is not a cache of this version, in tiles.
@@ -82,7 +82,7 @@ class TransportCacheReader {
   const std::filesystem::path& path() const { return file_.path(); }
   bool of_one_bake(const TransportCacheReader& other) const { return file_.attributes() == other.file_.attributes(); }
   bool is_of(const TransportCache& header) const;
-  // Fills the block, of whole tiles; false where any is missing or damaged.
+  // Fills the block; false where any of it is not in the file, missing or damaged. Decodes all tiles that it touches.
   bool read(TransportBlock& block);
 
  private:

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "inverse/transport/number_ranges.h"
 #include "renderer/core/error.h"
@@ -16,7 +18,8 @@ using renderer::Attributes;
 using renderer::Error;
 
 constexpr int kFormatVersion = 1;
-constexpr int kMostSamples = 1 << 24;
+constexpr int kMostSamples = 1 << 24, kMostBounces = 10000;
+constexpr double kLargestError = std::numeric_limits<float>::max();
 
 std::array<float, 3> array_of(Vec3f v) { return {v.x, v.y, v.z}; }
 
@@ -107,41 +110,58 @@ bool fills_region(const LightGrid& grid) {
   return true;
 }
 
-void read_finer_cells(const Header& header, const std::string& file, LightGrid& grid) {
-  std::vector<LightGrid::FinerCell> cells;
-  for (int level = 1; level <= kMostLevels; ++level) {
-    const auto* text = header.find<std::string>(name_of_level(level));
-    if (text == nullptr) continue;
-    const auto numbers = parse_number_ranges(*text);
-    const double count = double(grid.light_of_node.size()) * double(1 << (3 * level));
-    if (!numbers || numbers->empty() || double(numbers->back()) >= count) {
-      throw Error({file, "header", fmt::format("chiaro:{} does not fit the grid", name_of_level(level)), kNotACache});
-    }
-    for (const int number : *numbers) cells.push_back({level, std::uint64_t(number)});
-  }
-  set_finer_cells(grid, std::move(cells));
+std::size_t node_count(const LightGrid& grid) {
+  return std::size_t(grid.counts[0]) * std::size_t(grid.counts[1]) * std::size_t(grid.counts[2]);
 }
 
-LightGrid read_grid(const Header& header, const std::string& file) {
+// Numbers below `end`, at least one and at most `most`.
+std::vector<int> read_numbers(const std::string& text, const std::string& name, double end, std::size_t most,
+                              const std::string& file) {
+  auto numbers = parse_number_ranges(text, most);
+  if (numbers && !numbers->empty() && double(numbers->back()) < end) return std::move(*numbers);
+  throw Error({file, "header", fmt::format("chiaro:{} does not fit the grid and the rows", name), kNotACache});
+}
+
+std::vector<LightGrid::FinerCell> read_finer_cells(const Header& header, const std::string& file, double nodes,
+                                                   std::size_t most) {
+  std::vector<LightGrid::FinerCell> cells;
+  for (int level = 1; level <= kMostLevels; ++level) {
+    const std::string name = name_of_level(level);
+    const auto* text = header.find<std::string>(name);
+    if (text == nullptr) continue;
+    const double end = nodes * double(1 << (3 * level));
+    for (const int number : read_numbers(*text, name, end, most - cells.size(), file)) {
+      cells.push_back({level, std::uint64_t(number)});
+    }
+  }
+  return cells;
+}
+
+// rows: as many as the file has lights. Takes no memory for nodes before they are as many.
+LightGrid read_grid(const Header& header, const std::string& file, std::size_t rows) {
+  constexpr std::size_t kMostNodes = 100'000'000;
   LightGrid grid;
   grid.region = {header.vector("region_min"), header.vector("region_max")};
   grid.origin = header.vector("grid_origin");
   grid.spacing = header.vector("grid_spacing");
   grid.counts = header.counts();
   if (!fills_region(grid)) throw Error({file, "header", "the light grid does not fill its region", kNotACache});
-  const auto nodes = parse_number_ranges(header.get<std::string>("grid_nodes"));
-  const std::size_t node_count = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
-  if (!nodes || nodes->empty() || std::size_t(nodes->back()) >= node_count || node_count > 100'000'000) {
-    throw Error({file, "header", "chiaro:grid_nodes does not fit the grid", kNotACache});
+  const std::size_t count = node_count(grid);
+  if (count > kMostNodes) throw Error({file, "header", "chiaro:grid_counts is out of range", kNotACache});
+  const std::vector<int> nodes =
+      read_numbers(header.get<std::string>("grid_nodes"), "grid_nodes", double(count), rows, file);
+  auto finer = read_finer_cells(header, file, double(count), rows - nodes.size());
+  if (nodes.size() + finer.size() != rows) {
+    throw Error({file, "", fmt::format("{} rows for {} lights", rows, nodes.size() + finer.size()), kNotACache});
   }
-  grid.light_of_node.assign(node_count, -1);
-  for (const int node : *nodes) {
+  grid.light_of_node.assign(count, -1);
+  for (const int node : nodes) {
     grid.light_of_node[node] = int(grid.positions.size());
     const int x = node % grid.counts[0], y = node / grid.counts[0] % grid.counts[1];
     const int z = node / grid.counts[0] / grid.counts[1];
     grid.positions.push_back(grid.origin + grid.spacing * Vec3f{float(x), float(y), float(z)});
   }
-  read_finer_cells(header, file, grid);
+  set_finer_cells(grid, std::move(finer));
   return grid;
 }
 
@@ -167,7 +187,7 @@ Attributes transport_cache_attributes(const TransportCache& cache) {
       {"chiaro:bounces", cache.settings.bounces},
       {"chiaro:seed", fmt::format("{}", cache.settings.seed)},
       {"chiaro:materials", cache.settings.materials},
-      {"chiaro:indirect_relative_error", float(cache.indirect_relative_error)}};
+      {"chiaro:indirect_relative_error", float(std::min(cache.indirect_relative_error, kLargestError))}};
   append_finer_cells(grid, attributes);
   return attributes;
 }
@@ -181,7 +201,7 @@ TransportCache transport_cache_from(const Attributes& attributes, int receivers,
                  fmt::format("format {}: bake again", kFormatVersion)});
   }
   TransportCache cache;
-  cache.grid = read_grid(header, name);
+  cache.grid = read_grid(header, name, std::size_t(lights));
   cache.receiver_count = std::size_t(receivers);
   cache.scene_fingerprint = header.get<std::string>("scene_fingerprint");
   cache.receiver_fingerprint = header.get<std::string>("receiver_fingerprint");
@@ -191,15 +211,20 @@ TransportCache transport_cache_from(const Attributes& attributes, int receivers,
                  fmt::format("1 to {}", kMostSamples)});
   }
   cache.settings.bounces = header.get<int>("bounces");
+  if (cache.settings.bounces < -1 || cache.settings.bounces > kMostBounces) {
+    throw Error({name, "header", fmt::format("chiaro:bounces is {}", cache.settings.bounces),
+                 fmt::format("0 to {}, or -1 for all", kMostBounces)});
+  }
   cache.settings.seed = header.parse<std::uint64_t>(header.get<std::string>("seed"), "seed");
   cache.settings.materials = header.get<std::string>("materials");
   cache.indirect_relative_error = double(header.get<float>("indirect_relative_error"));
+  if (!(cache.indirect_relative_error >= 0) || !std::isfinite(cache.indirect_relative_error)) {
+    throw Error({name, "header", fmt::format("chiaro:indirect_relative_error is {}", cache.indirect_relative_error),
+                 "a finite number, 0 or more"});
+  }
   cache.indirect_scale = header.get<float>("indirect_scale");
   if (!(cache.indirect_scale > 0) || !std::isfinite(cache.indirect_scale))
     throw Error({name, "header", "chiaro:indirect_scale is not positive", kNotACache});
-  if (std::size_t(lights) != cache.grid.positions.size()) {
-    throw Error({name, "", fmt::format("{} rows for {} lights", lights, cache.grid.positions.size()), kNotACache});
-  }
   return cache;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 
@@ -34,6 +35,7 @@ namespace {
 // zlib's fastest: the tenth that it leaves is not worth twice the time.
 constexpr int kZipLevel = 1;
 constexpr int kMostPixelsAcross = 1 << 30;
+constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 21;  // that are decoded, but for larger tiles
 constexpr const char* kExpected = "a tiled OpenEXR file";
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
@@ -113,6 +115,59 @@ Attributes attributes_of(const Imf::Header& header) {
   return all;
 }
 
+// Pixels or tiles [left, right) × [top, bottom).
+struct Window {
+  int left, right, top, bottom;
+
+  std::size_t width() const { return std::size_t(right - left); }
+  std::size_t area() const { return width() * std::size_t(bottom - top); }
+};
+
+// The tiles that these pixels are in. Both count from the picture's corner, but tiles across from the first column.
+Window tiles_over(const ExrTiles& shape, const Window& pixels) {
+  const int left = pixels.left - shape.first_column, right = pixels.right - shape.first_column;
+  return {left / shape.tile_width, (right - 1) / shape.tile_width + 1, pixels.top / shape.tile_height,
+          (pixels.bottom - 1) / shape.tile_height + 1};
+}
+
+// All that these tiles have: the last ones may be smaller.
+Window pixels_of(const ExrTiles& shape, const Window& tiles) {
+  const auto end = [](int first, int tile, int size, int last) {
+    return int(std::min(std::int64_t{first} + std::int64_t{tile} * size, std::int64_t{last}));
+  };
+  return {shape.first_column + tiles.left * shape.tile_width,
+          end(shape.first_column, tiles.right, shape.tile_width, shape.last_column), tiles.top * shape.tile_height,
+          end(0, tiles.bottom, shape.tile_height, shape.height)};
+}
+
+struct TileCount {
+  int across, down;
+};
+
+// As many of these as may be decoded at once.
+TileCount tiles_at_once(const ExrTiles& shape, const Window& tiles) {
+  const std::size_t width = std::size_t(std::min(shape.tile_width, shape.last_column - shape.first_column));
+  const std::size_t tile = width * std::size_t(std::min(shape.tile_height, shape.height));
+  const auto count = [](std::size_t fitting, int there) {
+    return std::clamp(fitting, std::size_t{1}, std::size_t(there));
+  };
+  const std::size_t across = count(kPixelsAtOnce / tile, tiles.right - tiles.left);
+  return {int(across), int(count(kPixelsAtOnce / tile / across, tiles.bottom - tiles.top))};
+}
+
+// What two windows share, from the one to the other.
+void copy_shared(const std::vector<half>& from, const Window& there, std::span<float> to, const Window& wanted,
+                 std::size_t channels) {
+  const int left = std::max(there.left, wanted.left), right = std::min(there.right, wanted.right);
+  const int top = std::max(there.top, wanted.top), bottom = std::min(there.bottom, wanted.bottom);
+  const auto offset = [&](const Window& window, int y) {
+    return std::ptrdiff_t((std::size_t(y - window.top) * window.width() + std::size_t(left - window.left)) * channels);
+  };
+  for (int y = top; y < bottom; ++y) {
+    std::copy_n(from.begin() + offset(there, y), std::size_t(right - left) * channels, to.begin() + offset(wanted, y));
+  }
+}
+
 // Of columns [first, …) from `top` on, in a buffer of `columns` a row.
 Imf::FrameBuffer frame_buffer(const ExrTiles& shape, half* pixels, int first, int columns, int top) {
   const std::size_t pixel = shape.channels.size() * sizeof(half), row = pixel * std::size_t(columns);
@@ -158,6 +213,8 @@ void ExrTileWriter::write(int tile_row, int first, int last, std::span<const flo
   std::vector<half> halves(size);
   std::transform(pixels.begin(), pixels.end(), halves.begin(), to_half);
   const int left = first - shape_.first_column, right = last - shape_.first_column;
+  CHIARO_CHECK(left >= 0 && left % shape_.tile_width == 0);
+  CHIARO_CHECK(last == shape_.last_column || (last < shape_.last_column && right % shape_.tile_width == 0));
   try {
     file_->output->setFrameBuffer(
         frame_buffer(shape_, halves.data(), first, last - first, tile_row * shape_.tile_height));
@@ -181,6 +238,18 @@ void ExrTileWriter::close() {
 
 struct ExrTileReader::File {
   explicit File(const std::filesystem::path& path) : input(path.c_str(), thread_count()) {}
+
+  // Whole tiles; `window`: their pixels. False where any is missing or damaged.
+  bool decode(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) {
+    try {
+      input.setFrameBuffer(frame_buffer(shape, pixels, window.left, int(window.width()), window.top));
+      input.readTiles(tiles.left, tiles.right - 1, tiles.top, tiles.bottom - 1);
+    } catch (const std::exception&) {
+      return false;
+    }
+    return true;
+  }
+
   Imf::TiledInputFile input;
 };
 
@@ -203,7 +272,7 @@ ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
   const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
   bool sensible = display.min == Imath::V2i(0, 0) && data.min.y == 0 && data.max.y == display.max.y &&
                   data.min.x >= 0 && data.max.x <= display.max.x && display.max.x < kMostPixelsAcross &&
-                  header.tileDescription().mode == Imf::ONE_LEVEL;
+                  display.max.y < kMostPixelsAcross && header.tileDescription().mode == Imf::ONE_LEVEL;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
     sensible = sensible && it.channel().type == Imf::HALF && it.channel().xSampling == 1 && it.channel().ySampling == 1;
     shape_.channels.emplace_back(it.name());
@@ -220,20 +289,23 @@ ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
 
 ExrTileReader::~ExrTileReader() = default;
 
-bool ExrTileReader::read(int tile_row, int tile_row_end, int first, int last, std::span<float> pixels) {
-  int rows = 0;
-  for (int row = tile_row; row < tile_row_end; ++row) rows += shape_.rows_of(row);
-  CHIARO_CHECK(pixels.size() == std::size_t(rows) * std::size_t(last - first) * shape_.channels.size());
-  std::vector<half> halves(pixels.size());
-  const int left = first - shape_.first_column, right = last - shape_.first_column;
-  try {
-    file_->input.setFrameBuffer(
-        frame_buffer(shape_, halves.data(), first, last - first, tile_row * shape_.tile_height));
-    file_->input.readTiles(left / shape_.tile_width, (right - 1) / shape_.tile_width, tile_row, tile_row_end - 1);
-  } catch (const std::exception&) {
-    return false;
+bool ExrTileReader::read(int top, int bottom, int first, int last, std::span<float> pixels) {
+  const Window wanted{first, last, top, bottom};
+  const bool across = shape_.first_column <= first && first < last && last <= shape_.last_column;
+  if (!across || top < 0 || top >= bottom || bottom > shape_.height) return false;
+  CHIARO_CHECK(pixels.size() == wanted.area() * shape_.channels.size());
+  const Window tiles = tiles_over(shape_, wanted);
+  const TileCount step = tiles_at_once(shape_, tiles);
+  std::vector<half> halves;
+  for (int y = tiles.top; y < tiles.bottom; y += step.down) {
+    for (int x = tiles.left; x < tiles.right; x += step.across) {
+      const Window some{x, std::min(x + step.across, tiles.right), y, std::min(y + step.down, tiles.bottom)};
+      const Window decoded = pixels_of(shape_, some);
+      halves.resize(decoded.area() * shape_.channels.size());
+      if (!file_->decode(shape_, some, decoded, halves.data())) return false;
+      copy_shared(halves, decoded, pixels, wanted, shape_.channels.size());
+    }
   }
-  std::copy(halves.begin(), halves.end(), pixels.begin());
   return true;
 }
 

@@ -19,7 +19,6 @@ struct ExrTiles {
   int tile_width = 1, tile_height = 1;
   std::vector<std::string> channels;  // in the order of pixels in memory; all half
 
-  int tile_rows() const { return (height + tile_height - 1) / tile_height; }
   // Of a row of tiles: the last may be lower.
   int rows_of(int tile_row) const { return std::min(tile_height, height - tile_row * tile_height); }
 };
@@ -59,8 +58,10 @@ class ExrTileReader {
   // Channels in alphabetical order, as OpenEXR has them.
   const ExrTiles& shape() const { return shape_; }
   const Attributes& attributes() const { return attributes_; }  // of the kinds above
-  // Columns [first, last) of some rows of tiles, whole tiles; false where any is missing or damaged.
-  bool read(int tile_row, int tile_row_end, int first, int last, std::span<float> pixels);
+  // Pixels [first, last) of rows [top, bottom), wherever tiles begin; false where any lies outside of the file's
+  // columns and rows, or in a tile that is missing or damaged. Beside them it takes memory for two million pixels, or
+  // for a tile where that is larger. Each call decodes anew the tiles that it touches.
+  bool read(int top, int bottom, int first, int last, std::span<float> pixels);
 
  private:
   struct File;

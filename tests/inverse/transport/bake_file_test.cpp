@@ -9,6 +9,7 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/retile.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
@@ -28,6 +29,11 @@ class BakeFile : public ::testing::Test {
                    const renderer::Control& control = {}) const {
     Baker baker(tracer_, receivers_, grid_, settings_, memory);
     bake_to_file(baker, folder_ / name, options, control);
+    return folder_ / name;
+  }
+  // All lights, some receivers, as another program may have it.
+  fs::path columns(const fs::path& cache, const std::string& name, const test::Tiling& tiling) const {
+    test::retile(cache, folder_ / name, tiling);
     return folder_ / name;
   }
   std::string whole() const { return read_file(folder_ / "whole.exr"); }
@@ -117,6 +123,50 @@ TEST_F(BakeFile, PartsMakeTheWhole) {
   EXPECT_EQ(read_file(folder_ / "merged.exr"), whole());
   EXPECT_THROW(load_transport_cache(parts[0]), Error);
   EXPECT_THROW(bake_as({.shard = {0, 1'000'000}, .resume = false}, "none.exr"), Error);
+}
+
+constexpr std::pair<int, int> kTilings[] = {{3, 5}, {100, 64}, {7, 1500}, {1024, 2048}};
+
+TEST_F(BakeFile, PartsInTilesOfAnySizeMakeTheWhole) {
+  const int all = int(receivers_.size()), half = all / 2;
+  for (const auto& [width, height] : kTilings) {
+    const fs::path first = columns(folder_ / "whole.exr", "0.exr", {width, height, 0, half});
+    const fs::path second = columns(folder_ / "whole.exr", "1.exr", {height, width, half, all});
+    merge_transport_caches(std::vector{second, first}, folder_ / "merged.exr", {});
+    EXPECT_EQ(read_file(folder_ / "merged.exr"), whole()) << width << " x " << height;
+  }
+}
+
+// Tiles of the whole have several receivers where lights are few.
+TEST_F(BakeFile, PartsThatBeginWithinATileMakeTheWhole) {
+  const LightGrid grid = make_light_grid(tracer_, {.counts = {3, 3, 3}, .region = {}});
+  ASSERT_GT(TransportCacheWriter::receivers_of_tile(grid.positions.size()), 16U);
+  const int all = int(receivers_.size());
+  ASSERT_GT(all, 120);
+  Baker baker(tracer_, receivers_, grid, settings_, kAllMemory);
+  bake_to_file(baker, folder_ / "few.exr", {}, {});
+  for (const int width : {1, 50, 4096}) {
+    std::vector<fs::path> parts;
+    parts.push_back(columns(folder_ / "few.exr", "0.exr", {width, 8, 0, 50}));
+    parts.push_back(columns(folder_ / "few.exr", "1.exr", {width, 8, 50, 53}));
+    parts.push_back(columns(folder_ / "few.exr", "2.exr", {width, 8, 53, all}));
+    merge_transport_caches(parts, folder_ / "merged.exr", {});
+    EXPECT_EQ(read_file(folder_ / "merged.exr"), read_file(folder_ / "few.exr")) << width;
+  }
+}
+
+TEST_F(BakeFile, GoesOnFromTilesOfAnySize) {
+  const fs::path file = folder_ / "resumed.exr";
+  for (const auto& [width, height] : kTilings) {
+    test::retile(folder_ / "whole.exr", folder_ / "retiled.exr", width, height);
+    const std::string bytes = read_file(folder_ / "retiled.exr");
+    for (const double part : {0.4, 1.0}) {
+      std::ofstream(unfinished_bake(file), std::ios::binary)
+          << bytes.substr(0, std::size_t(part * double(bytes.size())));
+      bake_as({.shard = {}, .resume = true}, "resumed.exr");
+      EXPECT_EQ(read_file(file), whole()) << width << " x " << height << ", " << part;
+    }
+  }
 }
 
 TEST_F(BakeFile, PartsThatDoNotFitAreRefused) {

@@ -7,6 +7,7 @@
 #include "renderer/core/error.h"
 #include "renderer/io/load_gltf.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::inverse {
@@ -167,7 +168,8 @@ TEST(Receivers, OfAPlaneUnderALightHaveTheClosedForm) {
 }
 
 // A tilted plane through the origin, so many metres across, and a light a tenth of that above it.
-// A lamp an eighth of a metre above the floor, whose receivers rounding keeps off the surface by as much as millimetres.
+// A lamp an eighth of a metre above the floor, whose receivers rounding keeps off the surface by as much as
+// millimetres.
 TEST(Receivers, FarFromTheOriginAreLitWhereTheirSurfaceIs) {
   for (const float away : {0.0F, 1024.0F, 8192.0F}) {
     Scene scene;
@@ -260,6 +262,28 @@ TEST(Receivers, OfASceneFarFromTheOriginLieOnIt) {
 TEST(Receivers, OfNothingOrOfTooMuchAreErrors) {
   EXPECT_THROW(make_receivers({}, {}), renderer::Error);
   EXPECT_THROW(make_receivers(test::corner_with_ball(), {.max_edge = 1e-5F}), renderer::Error);
+}
+
+Scene many_instances(renderer::Mesh mesh, std::size_t count) {
+  Scene scene;
+  test::add_mesh(scene, std::move(mesh), test::lambert({1, 1, 1}), "one of many");
+  scene.instances.resize(count, scene.instances[0]);
+  return scene;
+}
+
+TEST(Receivers, OfMoreInstancesThanMemoryHoldsAreRefusedBeforeTheyAreFlattened) {
+  const renderer::Mesh ball = test::sphere({0, 0, 0}, 1, 256);
+  const Scene scene = many_instances(ball, 40'000'000 / ball.positions.size());
+  const std::string message = test::error_of([&] { make_receivers(scene, {.max_edge = 100}); });
+  EXPECT_NE(message.find("the scene's own vertices"), std::string::npos) << message;
+  EXPECT_EQ(message.find("--max-edge"), std::string::npos) << message;
+}
+
+TEST(Receivers, VerticesThatNoTriangleUsesAreNotCounted) {
+  renderer::Mesh mesh = test::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  mesh.positions.resize(1'000'000, mesh.positions[0]);
+  mesh.normals.resize(1'000'000, mesh.normals[0]);
+  EXPECT_EQ(make_receivers(many_instances(mesh, 40), {.max_edge = 100}).size(), 160U);
 }
 
 TEST(Receivers, AFileWithoutUsableNormalsGetsThoseOfItsFaces) {

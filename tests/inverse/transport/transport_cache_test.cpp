@@ -1,13 +1,17 @@
 #include "inverse/transport/transport_cache.h"
 
 #include <fstream>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "inverse/transport/transport_cache_header.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/image/image_file.h"
+#include "tests/support/error_of.h"
+#include "tests/support/retile.h"
 #include "tests/support/save_transport_cache.h"
 #include "tests/support/temporary_folder.h"
 
@@ -142,6 +146,23 @@ TEST_F(TransportCacheFile, ReadsTheColumnsAskedFor) {
   }
 }
 
+TEST_F(TransportCacheFile, ReadsTilesOfAnySize) {
+  save_transport_cache(make_cache(1), path());
+  const TransportCache all = load_transport_cache(path());
+  const std::vector<std::size_t> chosen{0, 5, 6, 21, 36};
+  const TransportCache some = load_transport_cache(path(), chosen);
+  const fs::path retiled = folder_ / "retiled.exr";
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {5, 4}, {36, 13}, {37, 1}, {7, 4096}, {4096, 2}, {1, 1 << 20}, {1 << 20, 1}, {1024, 1024}}) {
+    test::retile(path(), retiled, width, height);
+    EXPECT_EQ(load_transport_cache_header(retiled).receiver_count, 37U);
+    EXPECT_EQ(load_transport_cache(retiled).visibility, all.visibility) << width << " x " << height;
+    EXPECT_EQ(load_transport_cache(retiled).indirect, all.indirect) << width << " x " << height;
+    EXPECT_EQ(load_transport_cache(retiled, chosen).visibility, some.visibility) << width << " x " << height;
+    EXPECT_EQ(load_transport_cache(retiled, chosen).indirect, some.indirect) << width << " x " << height;
+  }
+}
+
 TEST_F(TransportCacheFile, ReadsScanlineFilesOfOthers) {
   save_edited([](renderer::ImageFile&) {});  // as any program writes them
   ASSERT_FALSE(renderer::ExrTileReader::is_tiled(path()));
@@ -206,6 +227,54 @@ TEST_F(TransportCacheFile, HeadersThatDoNotFitAreRefused) {
   expect_refused("a seed that is no number");
   save_with("samples", std::string("77"));
   expect_refused("an attribute of another type");
+}
+
+TEST_F(TransportCacheFile, ValuesOutOfRangeAreRefusedByName) {
+  const auto refused = [&](const std::string& name) {
+    const std::string message = test::error_of([&] { load_transport_cache(path()); });
+    EXPECT_NE(message.find("chiaro:" + name), std::string::npos) << name << ": " << message;
+  };
+  for (const int bounces : {-2, 10001, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+    save_with("bounces", bounces);
+    refused("bounces");
+  }
+  for (const float error : {-1e-6F, -renderer::kInfinity, renderer::kInfinity, std::nanf("")}) {
+    save_with("indirect_relative_error", error);
+    refused("indirect_relative_error");
+  }
+  for (const int bounces : {-1, 0, 10000}) {
+    save_with("bounces", bounces);
+    EXPECT_EQ(load_transport_cache(path()).settings.bounces, bounces);
+  }
+}
+
+// Their nodes and cells fit the grid, but are more than there are rows.
+TEST_F(TransportCacheFile, NumbersBeyondTheRowsAreRefusedByName) {
+  const auto refused = [&](const char* name, const char* numbers) {
+    save_with(name, std::string(numbers));
+    const std::string message = test::error_of([&] { load_transport_cache(path()); });
+    EXPECT_NE(message.find(std::string("chiaro:") + name), std::string::npos) << numbers << ": " << message;
+  };
+  refused("grid_finer_1", "0-95");
+  refused("grid_finer_3", "0-6000");
+  TransportCache cache = make_cache(1);
+  cache.grid = {};
+  cache.grid.region = {{0, 0, 0}, {464, 464, 464}};
+  cache.grid.counts = {464, 464, 464};
+  cache.grid.spacing = {1, 1, 1}, cache.grid.origin = {0.5F, 0.5F, 0.5F};
+  cache.grid.light_of_node = {0};
+  renderer::Attributes attributes = transport_cache_attributes(cache);
+  attributes.emplace_back("chiaro:grid_finer_1", std::string("0-99999999"));
+  const std::string message = test::error_of([&] { transport_cache_from(attributes, 1, 1, "huge.exr"); });
+  EXPECT_NE(message.find("chiaro:grid_finer_1"), std::string::npos) << message;
+}
+
+// So that what is written can be read.
+TEST_F(TransportCacheFile, AnErrorBeyondAllFloatsIsWrittenAsTheLargest) {
+  TransportCache cache = make_cache(1);
+  cache.indirect_relative_error = std::numeric_limits<double>::infinity();
+  save_transport_cache(cache, path());
+  EXPECT_EQ(load_transport_cache(path()).indirect_relative_error, double(std::numeric_limits<float>::max()));
 }
 
 TEST_F(TransportCacheFile, MissingAttributesAreRefusedByName) {
