@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include <Eigen/QR>
 
@@ -9,6 +10,7 @@
 #include "inverse/solve/check_brightness.h"
 #include "inverse/solve/check_lights_in_place.h"
 #include "inverse/solve/fit_traced_columns.h"
+#include "inverse/solve/light_intervals.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/solve/traced_light.h"
@@ -23,7 +25,6 @@ constexpr int kLeastSamples = 64;          // paths per receiver
 constexpr double kComparedPaths = 2e6;     // of all receivers, where intensities are to be told roughly …
 constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
 constexpr int kFewerAgain = 4;             // times as few, the second time
-constexpr double kNinety = 1.645;          // standard deviations to either side
 
 renderer::Light with_intensity(renderer::Light light, Vec3f intensity) {
   intensity_of(light) = intensity;
@@ -57,27 +58,50 @@ TracedColumns trace_columns(const SolveProblem& problem, const renderer::Lights&
   return {traced(paths, 6), traced(paths / kFewerAgain, 8)};
 }
 
-// Half widths, by what the fit leaves at each receiver (sandwich estimate), as light_intervals(). Infinite where the
-// light brings nothing.
-std::vector<Eigen::Array3d> intensity_intervals(const Observations& observations, const std::vector<Column>& columns,
-                                                const Column& residual) {
-  const auto n = Eigen::Index(columns.size());
-  std::vector<Eigen::Array3d> half(columns.size());
-  for (int c = 0; c < 3; ++c) {
-    Eigen::MatrixXd a(residual.rows(), n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      a.col(j) = observations.sqrt_weight.cwiseProduct(columns[std::size_t(j)].col(c));
+// Of one channel's intensities, by what the fit leaves at each receiver (sandwich estimate), as light_intervals(). The
+// columns' noise, which makes lights look unlike each other that are not, is not that of the same columns traced again:
+// these are the instruments.
+Eigen::MatrixXd covariance_of_channel(const Observations& observations, const TracedColumns& traced,
+                                      const Column& residual, int channel) {
+  const auto weighted = [&](const std::vector<Column>& columns) {
+    Eigen::MatrixXd a(residual.rows(), Eigen::Index(columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      a.col(Eigen::Index(j)) = observations.sqrt_weight.cwiseProduct(columns[j].col(channel));
     }
-    const Eigen::MatrixXd inverse = (a.transpose() * a).completeOrthogonalDecomposition().pseudoInverse();
-    const Eigen::MatrixXd pull = observations.sqrt_weight.cwiseProduct(residual.col(c)).asDiagonal() * a;
-    const Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse;
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const bool shines = a.col(j).squaredNorm() > 0;
-      half[std::size_t(j)][c] =
-          shines ? kNinety * std::sqrt(std::max(0.0, covariance(j, j))) : std::numeric_limits<double>::infinity();
+    return a;
+  };
+  const Eigen::MatrixXd instruments = weighted(traced.again);
+  const Eigen::MatrixXd inverse =
+      (instruments.transpose() * weighted(traced.columns)).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd pull = observations.sqrt_weight.cwiseProduct(residual.col(channel)).asDiagonal() * instruments;
+  Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse.transpose();
+  for (Eigen::Index j = 0; j < covariance.rows(); ++j) {
+    if (!(instruments.col(j).squaredNorm() > 0)) covariance(j, j) = std::numeric_limits<double>::infinity();
+  }
+  return covariance;
+}
+
+// Half widths of intensities; of positions, which stay, none. Infinite where a light brings nothing.
+LightIntervals intervals_of(const Observations& observations, const TracedColumns& traced,
+                            const std::vector<Eigen::Array3d>& intensity) {
+  const Column residual =
+      total_illumination(traced.columns, intensity, observations.wanted.rows()) - observations.wanted;
+  LightIntervals intervals{std::vector<LightInterval>(intensity.size(), {Eigen::Vector3d::Zero(), {}}), {}};
+  std::set<std::pair<std::size_t, std::size_t>> confounded;
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::MatrixXd covariance = covariance_of_channel(observations, traced, residual, c);
+    const Eigen::VectorXd variance = covariance.diagonal();
+    for (std::size_t j = 0; j < intensity.size(); ++j) {
+      intervals.lights[j].intensity[c] = kNinety * std::sqrt(variance[Eigen::Index(j)]);
+      for (std::size_t k = j + 1; k < intensity.size(); ++k) {
+        const auto a = Eigen::Index(j), b = Eigen::Index(k);
+        const double dimmer = std::min(intensity[j][c], intensity[k][c]);
+        if (only_their_sum_is_known(variance[a], variance[b], covariance(a, b), dimmer)) confounded.emplace(j, k);
+      }
     }
   }
-  return half;
+  intervals.confounded.assign(confounded.begin(), confounded.end());
+  return intervals;
 }
 
 double error_of(const Observations& observations, const std::vector<Column>& columns,
@@ -86,21 +110,19 @@ double error_of(const Observations& observations, const std::vector<Column>& col
 }
 
 // In the order of the scene's lights.
-std::vector<FoundLight> lit(const renderer::Lights& lights, const Observations& observations,
-                            const std::vector<Column>& columns, const std::vector<Eigen::Array3d>& intensity) {
-  const Column residual = total_illumination(columns, intensity, observations.wanted.rows()) - observations.wanted;
-  const std::vector<Eigen::Array3d> half = intensity_intervals(observations, columns, residual);
-  std::vector<FoundLight> found;
+void report_lights(const SolveProblem& problem, const Observations& observations, const TracedColumns& traced,
+                   const std::vector<Eigen::Array3d>& intensity, SolveResult& result) {
+  const LightIntervals intervals = intervals_of(observations, traced, intensity);
   double total = 0;
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    FoundLight& light = found.emplace_back();
-    light.light = with_intensity(lights[j], to_vec3f(intensity[j].matrix()));
-    light.contribution = contribution_norm(observations, columns[j], intensity[j]);
-    light.intensity_interval = to_vec3f(half[j].matrix());
+  for (std::size_t j = 0; j < intensity.size(); ++j) {
+    FoundLight& light = result.lights.emplace_back();
+    light.light = with_intensity(problem.lights_in_place[j], to_vec3f(intensity[j].matrix()));
+    light.contribution = contribution_norm(observations, traced.columns[j], intensity[j]);
+    light.intensity_interval = to_vec3f(intervals.lights[j].intensity.matrix());
     total += light.contribution;
   }
-  for (FoundLight& light : found) light.contribution /= std::max(total, 1e-300);
-  return found;
+  for (FoundLight& light : result.lights) light.contribution /= std::max(total, 1e-300);
+  for (const auto& [j, k] : intervals.confounded) result.not_told_apart.emplace_back(int(j) + 1, int(k) + 1);
 }
 
 renderer::Lights found_lights(const SolveResult& result) {
@@ -142,9 +164,11 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   check_lights_in_place(problem);
   const auto [samples, observations] = observe_many(problem, options, control);
   const int paths = std::max(kLeastSamples, verification_samples(options, samples.size()));
-  const auto [columns, again] = trace_columns(problem, problem.lights_in_place, samples, paths, options, control);
+  const TracedColumns traced_columns =
+      trace_columns(problem, problem.lights_in_place, samples, paths, options, control);
+  const std::vector<Column>& columns = traced_columns.columns;
   result.cache_seconds = clock.finish_transport("traced_lights", {{"lights", double(columns.size())}});
-  const IntensityFit fit = fit_traced_columns(observations, columns, again);
+  const IntensityFit fit = fit_traced_columns(observations, columns, traced_columns.again);
   result.relative_l2_cached = error_of(observations, columns, fit.intensity);
   result.optimal_seconds =
       clock.finish("nnls", {{"relative_l2", result.relative_l2_cached}, {"kkt_residual", fit.kkt_residual}});
@@ -157,7 +181,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   std::vector<Eigen::Array3d> before;
   for (const renderer::Light& light : problem.lights_in_place) before.push_back(to_eigen(intensity_of(light)).array());
   result.initial_relative_l2 = error_of(observations, columns, before);
-  result.lights = lit(problem.lights_in_place, observations, columns, fit.intensity);
+  report_lights(problem, observations, traced_columns, fit.intensity, result);
   result.target_noise = target_noise(problem.target);
   result.important_vertices = int(observations.wanted.rows());
   FreshTrace traced = trace_for_verification(problem, found_lights(result), options, control, clock);

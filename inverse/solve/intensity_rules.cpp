@@ -140,25 +140,44 @@ class RuledColors {
   MatrixX3d intensity() const { return strength_.asDiagonal() * color_; }
 
   void start_from(const MatrixX3d& free) {
-    if (rules_.one_color) return set_one_color(free.colwise().sum().transpose());
-    for (Index j = 0; j < count_; ++j) set_temperature(j, [&](const Vector3d& k) { return misfit(free.row(j), k); });
+    const auto distance_to = [](const Vector3d& intensity, double limit) {
+      return AlongColor{intensity, Vector3d::Ones(), limit};
+    };
+    if (rules_.one_color) return set_one_color(distance_to(free.colwise().sum(), double(count_) * upper_));
+    for (Index j = 0; j < count_; ++j) set_temperature(j, distance_to(free.row(j), upper_));
   }
 
-  static double misfit(const Vector3d& wanted, const Vector3d& color) {
-    return (wanted - wanted.dot(color) / color.squaredNorm() * color).squaredNorm();
+  // What a colour's cost is ½ s² Σ k² squared − s Σ k along of, with the best strength s from 0 to the limit.
+  struct AlongColor {
+    Vector3d along, squared;
+    double limit;
+
+    double strength(const Vector3d& color) const {
+      return std::clamp(color.dot(along) / std::max(color.cwiseAbs2().dot(squared), 1e-300), 0.0, limit);
+    }
+    double cost(const Vector3d& color) const {
+      const double s = strength(color);
+      return s * s * color.cwiseAbs2().dot(squared) / 2 - s * color.dot(along);
+    }
+    // The best of all colours, times its strength.
+    Vector3d best() const { return along.cwiseQuotient(squared.cwiseMax(1e-300)).cwiseMax(0).cwiseMin(limit); }
+  };
+
+  // None that costs more than the one that it has.
+  void set_temperature(Index light, const AlongColor& along) {
+    const auto cost = [&](double mired) { return along.cost(color_at(mired)); };
+    const double best = best_mired(*rules_.kelvin, cost);
+    if (mired_[light] > 0 && !(cost(best) < cost(mired_[light]))) return;
+    mired_[light] = best;
+    color_.row(light) = color_at(best).transpose();
   }
 
-  template <class Cost>
-  void set_temperature(Index light, const Cost& cost_of_color) {
-    mired_[light] = best_mired(*rules_.kelvin, [&](double mired) { return cost_of_color(color_at(mired)); });
-    color_.row(light) = color_at(mired_[light]).transpose();
-  }
-
-  void set_one_color(const Vector3d& wanted) {
+  void set_one_color(const AlongColor& along) {
+    const Vector3d best = along.best();
     if (rules_.kelvin) {
-      set_temperature(0, [&](const Vector3d& k) { return misfit(wanted, k); });
-    } else if (wanted.maxCoeff() > 0) {
-      color_.row(0) = (wanted / wanted.maxCoeff()).transpose();
+      set_temperature(0, along);
+    } else if (best.maxCoeff() > 0) {
+      color_.row(0) = (best / best.maxCoeff()).transpose();
     }
     for (Index j = 1; j < count_; ++j) color_.row(j) = color_.row(0), mired_[j] = mired_[0];
   }
@@ -183,37 +202,25 @@ class RuledColors {
 
   // The strengths being what they are, up to a common factor.
   void fit_one_color() {
-    Vector3d along, squared;
+    AlongColor all{{}, {}, upper_ / std::max(strength_.maxCoeff(), 1e-300)};
     for (int c = 0; c < 3; ++c) {
-      along[c] = strength_.dot(channels_[std::size_t(c)].atb);
-      squared[c] = strength_.dot(channels_[std::size_t(c)].gram * strength_);
+      all.along[c] = strength_.dot(channels_[std::size_t(c)].atb);
+      all.squared[c] = strength_.dot(channels_[std::size_t(c)].gram * strength_);
     }
-    if (rules_.kelvin) {
-      set_temperature(0, [&](const Vector3d& k) { return cost_along(k, along, squared); });
-      for (Index j = 1; j < count_; ++j) color_.row(j) = color_.row(0), mired_[j] = mired_[0];
-    } else {
-      set_one_color(along.cwiseMax(0).cwiseQuotient(squared.cwiseMax(1e-300)));
-    }
-  }
-
-  // Of the best strength of this colour.
-  static double cost_along(const Vector3d& color, const Vector3d& along, const Vector3d& squared) {
-    const double gain = std::max(0.0, color.dot(along));
-    return -gain * gain / std::max(color.cwiseAbs2().dot(squared), 1e-300);
+    set_one_color(all);
   }
 
   // With the light's strength, all others being what they are.
   void fit_temperature(Index light) {
     const MatrixX3d all = intensity();
-    Vector3d along, squared;
+    AlongColor own{{}, {}, upper_};
     for (int c = 0; c < 3; ++c) {
       const NormalEquations& channel = channels_[std::size_t(c)];
-      squared[c] = channel.gram(light, light);
-      along[c] = channel.atb[light] - channel.gram.row(light).dot(all.col(c)) + squared[c] * all(light, c);
+      own.squared[c] = channel.gram(light, light);
+      own.along[c] = channel.atb[light] - channel.gram.row(light).dot(all.col(c)) + own.squared[c] * all(light, c);
     }
-    set_temperature(light, [&](const Vector3d& k) { return cost_along(k, along, squared); });
-    const Vector3d k = color_.row(light);
-    strength_[light] = std::clamp(k.dot(along) / std::max(k.cwiseAbs2().dot(squared), 1e-300), 0.0, upper_);
+    set_temperature(light, own);
+    strength_[light] = own.strength(color_.row(light));
   }
 
   bool temperature_is_free(Index light) const {
@@ -240,7 +247,10 @@ class RuledColors {
       MatrixX3d& all = ways.emplace_back(MatrixX3d::Zero(count_, 3));
       for (Index j = 0; j < count_; ++j) all.row(j) = by_mired(j);
     }
-    for (int c = 0; c < 3 && !rules_.kelvin; ++c) ways.emplace_back(MatrixX3d::Zero(count_, 3)).col(c) = strength_;
+    for (int c = 0; c < 3 && !rules_.kelvin; ++c) {
+      const bool may_grow = strength_.maxCoeff() * color_(0, c) < upper_;
+      if (may_grow) ways.emplace_back(MatrixX3d::Zero(count_, 3)).col(c) = strength_;
+    }
     return ways;
   }
 

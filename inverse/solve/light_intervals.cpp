@@ -12,7 +12,6 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr int kParameters = 6;          // of a light: x, y, z, red, green, blue
-constexpr double kNinety = 1.645;       // standard deviations to either side
 constexpr double kOpposed = 0.9;        // correlation, and less than its negative: one makes good what the other lacks
 constexpr double kUnknown = 1e-10;      // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
 constexpr double kLeastOutside = 0.01;  // of what a receiver leaves, as far as the others decide it
@@ -105,21 +104,23 @@ Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
   return pulls;
 }
 
-// What one light has more the other has less, by as much as they shine.
 bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimates& lights, std::size_t j,
                            std::size_t k) {
   for (int c = 0; c < 3; ++c) {
     const auto a = Eigen::Index(kParameters * j + 3) + c, b = Eigen::Index(kParameters * k + 3) + c;
-    const double one = std::sqrt(covariance(a, a)), other = std::sqrt(covariance(b, b));
-    if (std::isinf(one) && std::isinf(other)) return true;
-    const bool opposed = covariance(a, b) < -kOpposed * one * other;
     const double dimmer = std::min(lights[j].intensity[c], lights[k].intensity[c]);
-    if (opposed && kNinety * std::min(one, other) > dimmer) return true;
+    if (only_their_sum_is_known(covariance(a, a), covariance(b, b), covariance(a, b), dimmer)) return true;
   }
   return false;
 }
 
 }  // namespace
+
+bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer) {
+  const double one = std::sqrt(variance), other = std::sqrt(other_variance);
+  if (std::isinf(one) && std::isinf(other)) return true;
+  return covariance < -kOpposed * one * other && kNinety * std::min(one, other) > dimmer;
+}
 
 LightIntervals unknown_intervals(std::size_t lights) {
   const double infinity = std::numeric_limits<double>::infinity();

@@ -20,6 +20,11 @@ struct LightIntervals {
 // Of more nothing is computed: time and memory grow with their third and second power.
 inline constexpr std::size_t kMostLightsWithIntervals = 100;
 
+inline constexpr double kNinety = 1.645;  // standard deviations to either side
+
+// Of two intensities of one channel: what one light has more the other has less, by as much as the dimmer one shines.
+bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer);
+
 // All infinite.
 LightIntervals unknown_intervals(std::size_t lights);
 

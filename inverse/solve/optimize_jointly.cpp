@@ -30,6 +30,18 @@ LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   return some;
 }
 
+// At the nearest places where they may stand, and as bright as they may be, where rules say anything of that.
+LightEstimates kept_to_rules(const LightResponse& response, const Observations& ruled, LightEstimates lights) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const LightEstimate& light : lights) positions.push_back(light.position);
+  const std::vector<Eigen::Vector3d> before = positions;
+  const bool moved = response.places().settle(positions) && positions != before;
+  if (lights.empty() || !(moved || ruled.rules.any())) return lights;
+  for (std::size_t j = 0; j < lights.size(); ++j) lights[j].position = positions[j];
+  refit_intensities(ruled, evaluate_columns(response, lights, Evaluation::kTracedVisibility), lights);
+  return lights;
+}
+
 // beside_surfaces: in all of them.
 std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
                                      const LightEstimates& beside_surfaces, const LightCountResult& count) {
@@ -182,9 +194,9 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
   JointLights found;
-  found.start = joined(beside_surfaces, cut.lights);
-  found.cut = cut.nodes;
   remaining.rules = search.problem.intensities;
+  found.start = joined(beside_surfaces, kept_to_rules(response, remaining, cut.lights));
+  found.cut = cut.nodes;
 
   const auto find_the_rest = [&] {
     if (already >= most_lights(options)) return LightCountResult{};

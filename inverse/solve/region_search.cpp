@@ -19,8 +19,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kHeldOut = 6000;  // receivers that tell how many lights there are
-constexpr double kCloseEnough = 0.01;   // error, whatever the noise
-constexpr double kMatters = 0.05;       // of the target's norm: a light that a larger region is for
+constexpr double kCloseEnough = 0.01;   // of what is wanted: error, whatever the noise
+constexpr double kMatters = 0.05;       // of what is wanted: a light that a larger region is for
 constexpr std::size_t kCrowd = 3;       // so many of them at the border may stand for fewer beyond it
 constexpr double kAsClose = 1.1;        // of an error, or less: fewer lights are better
 constexpr float kGrowth = 0.5F;         // of the region's longest side
@@ -80,6 +80,11 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
 
 bool is_joint(const SearchBasis& basis) { return basis.options.method == SolveMethod::kJoint; }
 
+// Of what shines already nothing is left in it.
+double norm_of_wanted(const Observations& observations) {
+  return std::max((observations.sqrt_weight.asDiagonal() * observations.wanted).norm(), 1e-300);
+}
+
 // The faces of a region that one of the lights is at, moved outwards.
 struct Growth {
   Box3f region;
@@ -101,8 +106,11 @@ Growth grown_at(const Box3f& region, const std::vector<Vector3d>& lights) {
   return growth;
 }
 
+// Another region than a cache's is baked here.
 SolveProblem with_region(SolveProblem problem, const std::optional<Box3f>& region) {
-  if (region) problem.grid.region = region;
+  if (!region) return problem;
+  if (problem.grid.region != region) problem.cache_file.reset();
+  problem.grid.region = region;
   return problem;
 }
 
@@ -161,7 +169,7 @@ void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& 
 // another search that is to be compared with one that they speak of.
 void RegionSearch::see_how_far_held_out_ones_are(const RegionSearch* before, StageClock& clock) {
   const bool compared = before != nullptr && before->found_.held_out.size() > 0;
-  const bool tells = basis->published.noise == 0 && found_.beside_surfaces.empty() && found_.error > kCloseEnough;
+  const bool tells = basis->published.noise == 0 && found_.beside_surfaces.empty() && part_left() > kCloseEnough;
   const bool known = found_.held_out.size() > 0 || !(compared || tells);
   if (known || found_.out_of_time || clock.out_of_time()) return;
   share_or_hold_out(before, clock);
@@ -189,10 +197,10 @@ std::optional<Box3f> RegionSearch::wider_region() const {
   std::vector<Vector3d> lights;
   for (std::size_t j = 0; j < columns.size(); ++j) {
     const double norm = contribution_norm(judged, columns[j], found_.others[j].intensity);
-    if (norm > kMatters * judged.target_norm) lights.push_back(found_.others[j].position);
+    if (norm > kMatters * norm_of_wanted(judged)) lights.push_back(found_.others[j].position);
   }
   const Growth growth = grown_at(transport.cache.grid.region, lights);
-  const bool close = is_explained(found_) || found_.error < kCloseEnough;
+  const bool close = is_explained(found_) || part_left() < kCloseEnough;
   if (growth.lights_at_border < (close ? kCrowd : 1)) return std::nullopt;
   return growth.region;
 }
@@ -201,8 +209,10 @@ bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
   if (!found_.beside_surfaces.empty()) return false;
   const bool fewer = found_.others.size() < other.found_.others.size();
   return found_.error < kClearlyBetter * other.found_.error ||
-         (fewer && found_.error < std::max(kCloseEnough, kAsClose * other.found_.error));
+         (fewer && (part_left() < kCloseEnough || found_.error < kAsClose * other.found_.error));
 }
+
+double RegionSearch::part_left() const { return found_.error * judged.target_norm / norm_of_wanted(judged); }
 
 double RegionSearch::missed() const {
   if (found_.held_out.size() == 0) return 0;
@@ -222,7 +232,7 @@ bool RegionSearch::brings_closer() const {
 }
 
 bool RegionSearch::was_misled() const {
-  const bool close = basis->published.noise == 0 && found_.error <= kCloseEnough;
+  const bool close = basis->published.noise == 0 && part_left() <= kCloseEnough;
   return !found_.out_of_time && basis->options.earlier.empty() && !close && missed() > most_missed();
 }
 

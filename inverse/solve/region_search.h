@@ -57,6 +57,8 @@ class RegionSearch {
 
  private:
   JointSearch joint_search() const;
+  // What the lights found leave, in parts of what they were to bring.
+  double part_left() const;
   // Of what held-out receivers want: with noise the part of the brightness that is missed, without it the error.
   double missed() const;
   double most_missed() const;

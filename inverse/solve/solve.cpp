@@ -173,17 +173,22 @@ std::string termination_of(const Optimum& searched, std::size_t lights) {
   return fewer && searched.termination == kAsManyAsAllowed ? kNoFurtherExplainsMore : searched.termination;
 }
 
-// Nobody says where the region of the lights ends.
-bool region_may_grow(const SolveProblem& problem) { return !problem.grid.region && !problem.cache_file; }
+// Nobody says where the region of the lights ends, nor has a cache one of its own.
+bool region_may_grow(const SolveProblem& problem) {
+  if (problem.grid.region) return false;
+  if (!problem.cache_file) return true;
+  return load_transport_cache_header(*problem.cache_file).grid.region == default_region(problem.tracer);
+}
 
 // Where lights of an earlier solve stand it reaches, too. Absent: as the problem says.
 std::optional<Box3f> first_region(const SolveProblem& problem, const SolveOptions& options) {
-  if (!region_may_grow(problem) || options.earlier.empty()) return std::nullopt;
-  Box3f region = default_region(problem.tracer);
+  if (options.earlier.empty() || !region_may_grow(problem)) return std::nullopt;
+  const Box3f whole = default_region(problem.tracer);
+  Box3f region = whole;
   for (const LightSet& set : options.earlier) {
     for (const renderer::PointLight& light : set.lights) region.extend(light.position);
   }
-  return region;
+  return region == whole ? std::nullopt : std::optional(region);
 }
 
 SearchBasis make_basis(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
@@ -247,9 +252,7 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
   const std::size_t before = basis->importance.chosen.size();
   Importance more = choose_again(basis->importance, problem.target, kMoreVertices * before, seed);
   if (more.chosen.size() == before) return found;
-  const std::optional<Box3f> region =
-      region_may_grow(problem) ? std::optional(found->transport.cache.grid.region) : std::nullopt;
-  auto again = search(basis_of(std::move(more)), problem, region, found.get(), clock, result);
+  auto again = search(basis_of(std::move(more)), problem, found->problem.grid.region, found.get(), clock, result);
   return again->misses_less_than(*found) ? std::move(again) : std::move(found);
 }
 

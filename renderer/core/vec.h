@@ -67,6 +67,7 @@ struct Box3f {
   Vec3f min{kInfinity, kInfinity, kInfinity};
   Vec3f max{-kInfinity, -kInfinity, -kInfinity};
 
+  bool operator==(const Box3f&) const = default;
   bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
   Vec3f extent() const { return empty() ? Vec3f{} : max - min; }
   Vec3f center() const { return 0.5F * (min + max); }

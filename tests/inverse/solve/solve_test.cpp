@@ -374,6 +374,18 @@ TEST(Solve, FindsLightsOutsideTheBoundsOfAnOpenScene) {
   }
 }
 
+// What it shines is a small part of all light, and of what is wanted of it all.
+TEST(Solve, ALightBesideAnOpenSceneIsFoundBesideBrightOnesThatStay) {
+  const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
+  const LightEstimates kept{{{-2, 2, 1}, {9000, 9000, 9000}}}, known{{{1, 7, -2}, {300, 200, 100}}};
+  const Target target = open.target({kept[0], known[0]}, 0);
+  SolveProblem problem = problem_of(open, target, 0);
+  problem.kept_lights = point_lights(kept);
+  const SolveResult result = solve(problem, quick());
+  ASSERT_EQ(result.lights.size(), 1U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * open.diagonal());
+}
+
 // Many lights at the border of a region close to a floor do nearly what one does far above it.
 TEST(Solve, OneLightBeyondIsBetterThanManyAtTheBorder) {
   const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
@@ -498,6 +510,28 @@ TEST(Solve, ACacheFileGivesWhatABakeGives) {
   const SolveResult result = solve(problem, quick());
   ASSERT_EQ(result.lights.size(), 1U);
   EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * corner.diagonal());
+}
+
+// A cache of the whole scene ends where nobody wanted lights to end; one of a region of its own where that ends.
+TEST(Solve, LooksBeyondACacheOfTheWholeScene) {
+  const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
+  const LightEstimates known{{{1, 7, -2}, {300, 200, 100}}};
+  const Target target = open.target(known, 0);
+  const test::TemporaryFolder folder;
+  SolveProblem problem = problem_of(open, target, 0);
+  problem.cache_file = folder.path() / "cache.exr";
+  const auto solve_with_cache_of = [&](std::optional<Box3f> region) {
+    LightGridOptions grid = problem.grid;
+    grid.region = region;
+    save_transport_cache(
+        bake(open.tracer(), open.receivers(), make_light_grid(open.tracer(), grid), bake_settings(0)).cache,
+        *problem.cache_file);
+    return positions_of(solve(problem, quick()));
+  };
+  EXPECT_LT(farthest_from(known, solve_with_cache_of({})), 0.01 * open.diagonal());
+  Box3f smaller = default_region(open.tracer());
+  smaller.max.x -= 0.1F;
+  for (const Vector3d& p : solve_with_cache_of(smaller)) EXPECT_TRUE(smaller.contains(to_vec3f(p)));
 }
 
 TEST(Solve, StaleCachesAreRefusedWithTheReason) {
