@@ -41,6 +41,7 @@ struct BakeCommand {
   inverse::BakeFileOptions file;
   std::optional<double> memory;  // bytes
   std::string scene, output;
+  const CLI::App* command = nullptr;
 };
 
 void print_summary(Session& session, const BakeCommand& options, const inverse::TransportCache& cache,
@@ -76,12 +77,21 @@ inverse::BakeSummary bake_saying_what_stays(const BakeCommand& options, inverse:
   }
 }
 
+// A cache is of unity lights alone.
+void warn_of_idle_options(const BakeCommand& options, Session& session) {
+  for (const char* name : {"--environment", "--environment-rotation", "--environment-intensity"}) {
+    if (!was_given(*options.command, name)) continue;
+    session.warn(fmt::format("{}: does nothing in a bake, which is the same under any environment", name));
+  }
+}
+
 int run_bake(const BakeCommand& options) {
   Session session(options.common);
   session.require_outputs({options.output, inverse::unfinished_bake(options.output)});
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   environment_of(stage, options.transport.environment, session);  // refused where a solve would refuse it
-  const inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);
+  warn_of_idle_options(options, session);
+  const inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface, session);
   const inverse::BakeSettings settings = bake_settings(options.transport, options.common);
   const inverse::LightGrid grid = inverse::choose_light_grid(
       *stage.tracer, receivers, light_grid_options(*stage.scene, options.grid), settings, session.control());
@@ -96,6 +106,7 @@ int run_bake(const BakeCommand& options) {
 
 CommandRun add_bake(CLI::App& command) {
   const auto options = std::make_shared<BakeCommand>();
+  options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command, {"-o,--output", "C.exr", "The transport cache"}, options->output, {".exr"});
   add_surface_options(command, options->surface);

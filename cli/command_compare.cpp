@@ -33,6 +33,11 @@ struct CompareCommand {
 
 bool is_target(const std::string& file) { return has_extension(file, {".glb", ".gltf"}); }
 
+// Of a file that is no target. Error where it is no picture either.
+const char* kind_of(const std::string& file) {
+  return renderer::load_image_header(file).image.find_channel("visibility") >= 0 ? "a transport cache" : "a frame";
+}
+
 int limit_exceeded(const std::string& what, const std::string& reason, double limit) {
   print_message(fmt::format("limit exceeded: {}: {} (at most {:g})", what, reason, limit));
   return kLimitExceeded;
@@ -78,6 +83,8 @@ int compare_two_targets(const CompareCommand& options, Session& session) {
   refuse_options_of_frames(options);
   const inverse::Target a = inverse::load_illumination(options.a);
   const inverse::Target b = inverse::load_target(options.b);
+  session.warn(a.warnings);
+  session.warn(b.warnings);
   session.stop_if_interrupted();
   const inverse::TargetComparison comparison = naming_file(options.a, [&] { return inverse::compare_targets(a, b); });
   const renderer::Vec3f place = b.receivers.positions[comparison.max_at];
@@ -111,9 +118,9 @@ int run_compare(const CompareCommand& options) {
   Session session(options.common);
   if (is_target(options.a) != is_target(options.b)) {
     const std::string& target = is_target(options.a) ? options.a : options.b;
-    const std::string& frame = is_target(options.a) ? options.b : options.a;
+    const std::string& other = is_target(options.a) ? options.b : options.a;
     throw renderer::Error(
-        {target, "", fmt::format("is a target, but {} is a frame", frame), "two frames or two targets"});
+        {target, "", fmt::format("is a target, but {} is {}", other, kind_of(other)), "two frames or two targets"});
   }
   return is_target(options.a) ? compare_two_targets(options, session) : compare_two_frames(options, session);
 }

@@ -42,7 +42,7 @@ int run_illuminate(const IlluminateCommand& options) {
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   const renderer::Lights lights = choose_lights(stage, options.lights, options.transport.environment, session);
   require_light(stage, lights, "lights in the scene, or a light file given with --lights");
-  inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface);
+  inverse::Receivers receivers = choose_receivers(*stage.tracer, options.surface, session);
   const TracedTarget traced = trace_target(*stage.tracer, std::move(receivers), lights,
                                            trace_options(options.transport, options.common), session.control());
   if (is_black(traced.target)) session.warn(options.output + ": no light reaches any receiver");

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "cli/scene_loading.h"
 #include "cli/text_output.h"
 #include "cli/transport_options.h"
+#include "inverse/target/illumination_picture.h"
 #include "inverse/target/paint.h"
 
 namespace chiaro::cli {
@@ -31,41 +31,29 @@ constexpr float kUnpaintedWeightOnCurrent = 1;
 constexpr float kUnpaintedWeightOnBlack = 0.05F;
 
 // What the strokes are applied to.
-inverse::Target make_base(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
-  const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
+inverse::Target make_base(const PaintCommand& options, const LoadedStage& stage, const inverse::Strokes& strokes,
+                          Session& session) {
   // Whatever the base: options of an environment that is none are refused.
   const renderer::Lights lights =
       choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   if (!options.from.empty()) {
     inverse::Target base = inverse::load_target(options.from);
     require_same_scene(*stage.tracer, base.receivers, options.from);
+    session.warn(base.warnings);
     return base;
   }
   if (strokes.base == inverse::StrokeBase::kBlack)
-    return black_target(choose_receivers(*stage.tracer, options.surface));
+    return black_target(choose_receivers(*stage.tracer, options.surface, session));
   require_light(stage, lights, "lights in the scene, or strokes whose base is black");
-  return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface), lights,
+  return trace_target(*stage.tracer, choose_receivers(*stage.tracer, options.surface, session), lights,
                       trace_options(options.transport, options.common), session.control())
       .target;
 }
 
-// Receivers that no stroke touches keep the weights of the base. They are told by a weight that no stroke gives.
-inverse::PaintResult paint_keeping_weights(const inverse::Target& base, const inverse::Strokes& strokes) {
-  float untouched = 1;
-  for (const inverse::Stroke& stroke : strokes.strokes) untouched = std::max(untouched, 2 * stroke.weight);
-  inverse::PaintResult result = inverse::paint(base, strokes, {.unpainted_weight = untouched});
-  for (std::size_t i = 0; i < base.weight.size(); ++i) {
-    if (result.target.weight[i] == untouched) result.target.weight[i] = base.weight[i];
-  }
-  return result;
-}
-
-inverse::PaintResult apply_strokes(const PaintCommand& options, const inverse::Target& base,
-                                   const inverse::Strokes& strokes) {
-  if (!options.from.empty() && !options.unpainted_weight) return paint_keeping_weights(base, strokes);
-  const bool on_black = strokes.base == inverse::StrokeBase::kBlack;
-  const float weight = on_black ? kUnpaintedWeightOnBlack : kUnpaintedWeightOnCurrent;
-  return inverse::paint(base, strokes, {.unpainted_weight = options.unpainted_weight.value_or(weight)});
+// Absent: the base's weights.
+std::optional<float> unpainted_weight(const PaintCommand& options, const inverse::Strokes& strokes) {
+  if (options.unpainted_weight || !options.from.empty()) return options.unpainted_weight;
+  return strokes.base == inverse::StrokeBase::kBlack ? kUnpaintedWeightOnBlack : kUnpaintedWeightOnCurrent;
 }
 
 void warn_of_misses(const PaintCommand& options, const inverse::PaintResult& result, Session& session) {
@@ -114,7 +102,7 @@ void warn_of_idle_light(const PaintCommand& options, const char* why, Session& s
 }
 
 void warn_of_idle_options(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
-  session.warn(idle_options(*options.command, {"--camera", "--width", "--height"}, {"--picture"}));
+  session.warn(idle_options(*options.command, {"--camera", "--width", "--height", "--hide-backs"}, {"--picture"}));
   session.warn(idle_view_options(*options.command, {"--picture"}, {"--environment"}));
   if (!options.from.empty()) {
     warn_of(options, {"--on", "--max-edge"}, "with --from, which has receivers of its own", session);
@@ -129,13 +117,21 @@ int run_paint(const PaintCommand& options) {
   require_picture(options.picture);
   session.require_outputs({options.output, options.picture.file});
   const inverse::Strokes strokes = inverse::load_strokes(options.strokes);
-  const inverse::Target base = make_base(options, strokes, session);
-  const inverse::PaintResult result = apply_strokes(options, base, strokes);
+  const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
+  const std::optional<PictureCamera> camera = choose_picture_camera(options.picture, *stage.scene, session);
+  const inverse::Target base = make_base(options, stage, strokes, session);
+  const inverse::PaintResult result =
+      inverse::paint(base, strokes, {.unpainted_weight = unpainted_weight(options, strokes)});
   session.stop_if_interrupted();
   warn_of_idle_options(options, strokes, session);
   warn_of_misses(options, result, session);
+  std::optional<renderer::Image> picture;
+  if (camera) {
+    picture = inverse::illumination_picture(*stage.tracer, result.target,
+                                            {camera->camera, camera->width, camera->height}, session.control());
+  }
   inverse::save_target(result.target, options.output);
-  save_illumination_picture(options.picture, options.scene, options.transport, result.target, session);
+  if (picture) save_illumination_picture(options.picture, *picture);
   print_summary(session, options, result);
   return kDone;
 }
@@ -156,6 +152,7 @@ CommandRun add_paint(CLI::App& command) {
        "Weight of receivers that no stroke touches (default: 1 on current, 0.05 on black, as it was with --from)"},
       options->unpainted_weight, kNotNegative);
   add_illumination_picture_options(command, options->picture);
+  add_hide_backs(command, options->transport.materials);
   add_surface_options(command, options->surface);
   add_transport_options(command, options->transport, "Paths per receiver where the base is current");
   add_common_options(command, options->common);

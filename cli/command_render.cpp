@@ -31,13 +31,27 @@ std::filesystem::path preview_of(const RenderCommand& options) {
   return options.preview ? beside(options.output, ".png") : "";
 }
 
+// Unlit surfaces are seen without light.
 void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, Session& session) {
-  if (lights.empty() && !has_emission(*stage.scene)) session.warn(stage.scene->path + ": no light: the frame is black");
+  if (!lights.empty() || has_emission(*stage.scene)) return;
+  const auto draws = [&](bool unlit) {
+    return renderer::any_drawn_material(*stage.scene, [&](const auto& material) { return material.unlit == unlit; });
+  };
+  if (!draws(false)) return;
+  const char* const black = draws(true) ? "all but unlit surfaces is black" : "the frame is black";
+  session.warn(fmt::format("{}: no light: {}", stage.scene->path, black));
+}
+
+// The header of the frame has --shutter and --iso all the same.
+void warn_of_idle_options(const RenderCommand& options, Session& session) {
+  session.warn(idle_view_options(*options.command, {"--preview"}, {"--output-space", "--environment", "--lights"}));
+  if (options.frame.lens.shutter && !options.preview) session.warn("--shutter: exposes nothing without --preview");
 }
 
 // Returns as save_frame().
-std::size_t save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Frame& frame) {
-  const FrameOrigin origin = frame_origin(options.scene, options.transport, options.common);
+std::size_t save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Lights& lights,
+                         const renderer::Frame& frame) {
+  const FrameOrigin origin = frame_origin({options.scene, options.lights, lights}, options.transport, options.common);
   const std::size_t held = save_frame(frame, camera, options.output, origin, options.frame);
   if (options.preview) save_preview(frame.image, preview_of(options), options.frame);
   return held;
@@ -84,11 +98,11 @@ int run_render(const RenderCommand& options) {
   const renderer::Lights lights = choose_lights(
       stage, options.lights, in_config(options.transport.environment, options.frame.view.config), session);
   warn_of_darkness(stage, lights, session);
-  session.warn(idle_view_options(*options.command, {"--preview"}, {"--output-space", "--environment", "--lights"}));
+  warn_of_idle_options(options, session);
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                              {trace_options(options.transport, options.common), session.control()});
-  const std::size_t held = save_outputs(options, camera, frame);
+  const std::size_t held = save_outputs(options, camera, lights, frame);
   warn_of_frame(frame, held, options.output, session);
   print_summary(session, options, camera, frame);
   return frame.interrupted ? interrupted_with(options.output) : kDone;

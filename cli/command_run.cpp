@@ -27,6 +27,7 @@ namespace chiaro::cli {
 namespace {
 
 constexpr int kDefaultFrameSamples = 64;
+constexpr const char* kLightsFile = "lights.glb";
 
 struct RunCommand {
   CommonOptions common;
@@ -44,6 +45,7 @@ JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const
                       const inverse::SolveProblem& problem, Session& session) {
   const inverse::LightGrid grid =
       inverse::choose_light_grid(*stage.tracer, target.receivers, problem.grid, problem.bake, session.control());
+  require_a_place(*stage.scene, grid, problem.places);
   inverse::Baker baker(*stage.tracer, target.receivers, grid, problem.bake, memory_left({}), session.control());
   const inverse::BakeSummary summary =
       inverse::bake_to_file(baker, options.folder() / "cache.exr", {}, session.control());
@@ -88,7 +90,7 @@ renderer::Frame render_camera(const RunCommand& options, const LoadedStage& stag
   renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                        {trace_options(transport, options.common), session.control()});
   if (frame.interrupted) throw renderer::Interruption();
-  const FrameOrigin origin = frame_origin(options.scene, transport, options.common);
+  const FrameOrigin origin = frame_origin({options.scene, kLightsFile, lights}, transport, options.common);
   const std::size_t held = save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
   warn_of_frame(frame, held, camera.name, session);
   save_preview(frame.image, beside(file, ".png"), options.frame);
@@ -168,8 +170,8 @@ void make_folders(const RunCommand& options, NewFolders& folders) {
 
 // A target file that is wanted as it is may well be that of an earlier run.
 std::vector<std::string> output_files(const RunCommand& options) {
-  std::vector<std::string> files{"lights.glb",           "lights.json",  "found.glb", "cache.exr",
-                                 "cache.exr.unfinished", "summary.json", "index.html"};
+  std::vector<std::string> files{kLightsFile,    "lights.json", "found.glb", "cache.exr", "cache.exr.unfinished",
+                                 "summary.json", "index.html"};
   if (!is_target_file_alone(options.choices.target)) files.emplace_back("target.glb");
   return files;
 }
@@ -202,14 +204,15 @@ int run_run(RunCommand options) {
   NewFolders folders;
   make_folders(options, folders);
   JsonObject summary = wanted.pictures;
-  if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   if (problem.lights_in_place.empty()) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
     problem.cache_file = options.folder() / "cache.exr";
   }
-  const inverse::SolveResult result =
+  inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
-  save_found_lights(options.scene, result, options.folder() / "lights.glb",
+  name_apart(problem, result);
+  if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
+  save_found_lights(options.scene, result, options.folder() / kLightsFile,
                     output_scene_options(stage, options.choices));
   const inverse::Target found = found_target(target, result);
   inverse::save_target(found, options.folder() / "found.glb");

@@ -52,6 +52,10 @@ void print_summary(Session& session, const SolveCommand& options, const WantedTa
 void warn_of_idle_options(const SolveCommand& options, Session& session) {
   session.warn(idle_view_options(*options.command, {"--target-image", "--target-lightmap"}, {"--environment"}));
   session.warn(idle_target_options(*options.command));
+  session.warn(idle_options(*options.command, {"--hide-backs"}, {"--target-image"}));
+  if (!options.cache.empty() && was_given(*options.command, "--samples")) {
+    session.warn("--samples: does nothing with --cache, which was baked with its own");
+  }
 }
 
 void refuse_what_excludes_each_other(const SolveCommand& options) {
@@ -77,7 +81,6 @@ int run_solve(SolveCommand options) {
   warn_of_scene_lights(stage, options.choices, session);
   warn_of_idle_options(options, session);
   const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
-  if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   session.stop_if_interrupted();
   inverse::SolveProblem problem = solve_problem(stage, wanted.target, options.choices, options.common, session);
   use_cache(options, problem);
@@ -87,8 +90,10 @@ int run_solve(SolveCommand options) {
     solving.earlier = inverse::load_error_curve(options.from);
     solving.earlier_file = options.from;
   }
-  const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
+  inverse::SolveResult result = inverse::solve(problem, solving, session.control());
+  name_apart(problem, result);
   session.stop_if_interrupted();
+  if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   save_found_lights(options.scene, result, options.output, output_scene_options(stage, options.choices));
   print_summary(session, options, wanted, result);
   return kDone;
@@ -105,6 +110,7 @@ CommandRun add_solve(CLI::App& command) {
              options->output, {".glb", ".gltf"});
   add_solve_options(command, options->choices);
   add_view_options(command, options->choices.target.encoding.view);
+  add_hide_backs(command, options->choices.transport.materials);
   add_output(command, {"--save-target", "T.glb", "What the pictures and the target come to, as a target file"},
              options->save_target, {".glb", ".gltf"})
       ->required(false);

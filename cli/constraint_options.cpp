@@ -1,11 +1,15 @@
 #include "cli/constraint_options.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/add_options.h"
 #include "cli/usage_error.h"
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/blackbody.h"
+#include "renderer/core/error.h"
 
 namespace chiaro::cli {
 namespace {
@@ -89,6 +93,16 @@ inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::Lig
           .mounts = constraints.mounts,
           .surface_distance = constraints.surface_distance.value_or(0),
           .light_distance = constraints.light_distance.value_or(0)};
+}
+
+void require_a_place(const renderer::Scene& scene, const inverse::LightGrid& grid, const inverse::PlaceRules& rules) {
+  const inverse::AllowedPlaces places(scene, grid.region, rules);
+  const auto is_near_one = [&](renderer::Vec3f light) { return places.nearest(inverse::to_eigen(light)).has_value(); };
+  if (std::any_of(grid.positions.begin(), grid.positions.end(), is_near_one)) return;
+  throw renderer::Error({scene.path, "solve",
+                         fmt::format("no light possible: nowhere {} is a place{}",
+                                     inverse::where_lights_may_stand(rules), inverse::so_far_from_surfaces(rules)),
+                         "a smaller distance to surfaces, or a larger region"});
 }
 
 inverse::IntensityRules intensity_rules(const inverse::LightConstraints& constraints) {

@@ -1,6 +1,7 @@
 #include "cli/frame_metadata.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,8 @@ namespace chiaro::cli {
 namespace {
 
 using renderer::Mat4f;
+
+constexpr float kDegreesPerRadian = 180 / renderer::kPi;
 
 // glTF 2.0 specification, 3.10.3: finite and infinite perspective projection.
 Mat4f perspective(const renderer::Camera& camera, double aspect) {
@@ -49,6 +52,24 @@ Mat4f without_scale(Mat4f matrix) {
   return matrix;
 }
 
+void add_environment(renderer::Attributes& attributes, const renderer::EnvironmentLight& environment) {
+  const std::string image = std::filesystem::path(environment.image).filename().string();
+  if (!image.empty()) attributes.emplace_back("chiaro:environment", image);
+  attributes.emplace_back("chiaro:environment_rotation", environment.rotation * kDegreesPerRadian);
+  attributes.emplace_back("chiaro:environment_intensity", environment.intensity);
+}
+
+// What not every frame has.
+void add_choices(renderer::Attributes& attributes, const FrameOrigin& origin) {
+  if (origin.hide_backs) attributes.emplace_back("chiaro:hide_backs", 1);
+  if (!origin.light_file.empty()) attributes.emplace_back("chiaro:lights", origin.light_file);
+  if (!origin.variant.empty()) attributes.emplace_back("chiaro:variant", origin.variant);
+  const auto& [animation, seconds] = origin.animation;
+  if (!animation.empty()) attributes.emplace_back("chiaro:animation", animation);
+  if (seconds) attributes.emplace_back("chiaro:animation_time", float(*seconds));
+  if (origin.environment) add_environment(attributes, *origin.environment);
+}
+
 }  // namespace
 
 Mat4f ndc_from_camera(const renderer::Camera& camera, double frame_aspect_ratio) {
@@ -64,7 +85,7 @@ renderer::Attributes frame_attributes(const renderer::Camera& camera, double fra
                                       const FrameOrigin& origin) {
   const Mat4f camera_from_world = renderer::inverse_affine(without_scale(camera.world_from_camera));
   const Mat4f ndc_from_world = ndc_from_camera(camera, frame_aspect_ratio) * camera_from_world;
-  return {
+  renderer::Attributes attributes{
       {"whiteLuminance", 1.0F},
       {"worldToCamera", row_vector_matrix(camera_from_world)},
       {"worldToNDC", row_vector_matrix(ndc_from_world)},
@@ -76,6 +97,8 @@ renderer::Attributes frame_attributes(const renderer::Camera& camera, double fra
       {"chiaro:bounces", origin.bounces},
       {"chiaro:seed", fmt::format("{}", origin.seed)},
   };
+  add_choices(attributes, origin);
+  return attributes;
 }
 
 void add_matte_attributes(renderer::Attributes& attributes, const std::vector<renderer::Matte>& mattes) {

@@ -1,20 +1,30 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "renderer/image/image_file.h"
+#include "renderer/io/gltf_animation.h"
+#include "renderer/scene/light.h"
 #include "renderer/scene/scene.h"
 #include "renderer/trace/cryptomatte.h"
 
 namespace chiaro::cli {
 
-// What a frame's header says besides the camera. No date and no duration: the same frame has the same bytes.
+// What a frame's header says besides the camera. No date and no duration: the same frame has the same bytes. Files are
+// names without folders.
 struct FrameOrigin {
-  std::string scene;  // file name
+  std::string scene;
   std::string materials;
   std::uint64_t seed = 0;
   int bounces = -1;
+  bool hide_backs = false;
+  std::string light_file = {};  // empty: the lights are the scene's
+  std::string variant = {};     // empty: none
+  renderer::AnimationChoice animation = {};
+  std::optional<renderer::EnvironmentLight> environment = {};
 };
 
 // CIE xy of Rec.709's red, green, blue and D65.

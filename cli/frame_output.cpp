@@ -61,6 +61,12 @@ void add_chromaticities(renderer::Attributes& attributes, const FrameOptions& op
   }
 }
 
+std::optional<renderer::EnvironmentLight> environment_among(const renderer::Lights& lights) {
+  const auto found = std::find_if(lights.begin(), lights.end(), renderer::is_environment);
+  if (found == lights.end()) return std::nullopt;
+  return std::get<renderer::EnvironmentLight>(*found);
+}
+
 // What decides how good the frame is, and the lens.
 void add_attributes(renderer::Attributes& attributes, const renderer::Frame& frame, const FrameOptions& options) {
   attributes.emplace_back("chiaro:samples", frame.samples);
@@ -68,10 +74,12 @@ void add_attributes(renderer::Attributes& attributes, const renderer::Frame& fra
   if (frame.relative_standard_error) {
     attributes.emplace_back("chiaro:relative_standard_error", float(*frame.relative_standard_error));
   }
+  if (options.time_limit > 0) attributes.emplace_back("chiaro:time_limit", float(options.time_limit));
   if (options.noise_threshold > 0) attributes.emplace_back("chiaro:noise_threshold", float(options.noise_threshold));
   if (options.clamp_direct) attributes.emplace_back("chiaro:clamp_direct", *options.clamp_direct);
   if (options.clamp_indirect) attributes.emplace_back("chiaro:clamp_indirect", *options.clamp_indirect);
   if (options.wide_highlights) attributes.emplace_back("chiaro:wide_highlights", 1);
+  if (options.box_filter) attributes.emplace_back("chiaro:filter", std::string("box"));
   if (frame.dropped_samples > 0) attributes.emplace_back("chiaro:dropped_samples", float(frame.dropped_samples));
   if (frame.interrupted) attributes.emplace_back("chiaro:interrupted", 1);
   if (options.lens.f_number) attributes.emplace_back("aperture", *options.lens.f_number);
@@ -147,11 +155,17 @@ std::vector<std::string> color_layers(const Image& frame) {
   return layers;
 }
 
-FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common) {
-  return {.scene = std::filesystem::path(scene).filename().string(),
+FrameOrigin frame_origin(const LitScene& scene, const TransportOptions& transport, const CommonOptions& common) {
+  const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
+  return {.scene = name(scene.file),
           .materials = text_of_materials(transport.materials),
           .seed = common.seed,
-          .bounces = transport.bounces.value_or(-1)};
+          .bounces = transport.bounces.value_or(-1),
+          .hide_backs = transport.materials.hide_backs,
+          .light_file = name(scene.light_file),
+          .variant = transport.load.variant,
+          .animation = transport.load.animation,
+          .environment = environment_among(scene.lights)};
 }
 
 std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,

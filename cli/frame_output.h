@@ -47,7 +47,13 @@ void require_color_choices(const FrameOptions& options, bool preview);
 renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,
                              const renderer::Lights& lights, const FrameOptions& options, const FrameRun& run);
 
-FrameOrigin frame_origin(const std::string& scene, const TransportOptions& transport, const CommonOptions& common);
+// Files of the scene and of its lights; empty: the scene's own. lights: all that shine.
+struct LitScene {
+  std::string file, light_file;
+  const renderer::Lights& lights;
+};
+
+FrameOrigin frame_origin(const LitScene& scene, const TransportOptions& transport, const CommonOptions& common);
 
 // What is to be said of a frame besides its figures. held: as save_frame() returned.
 void warn_of_frame(const renderer::Frame& frame, std::size_t held, const std::string& name, Session& session);

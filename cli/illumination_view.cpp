@@ -5,9 +5,7 @@
 #include "cli/add_options.h"
 #include "cli/output_paths.h"
 #include "cli/usage_error.h"
-#include "inverse/target/illumination_picture.h"
 #include "renderer/image/image_file.h"
-#include "renderer/scene/material_override.h"
 
 namespace chiaro::cli {
 namespace {
@@ -82,15 +80,15 @@ void require_picture(const IlluminationPictureOptions& options) {
   require_view(options.view);
 }
 
-void save_illumination_picture(const IlluminationPictureOptions& options, const std::string& scene,
-                               const TransportOptions& transport, const inverse::Target& target, Session& session) {
-  if (options.file.empty()) return;
-  const renderer::Scene surfaces = renderer::with_materials(renderer::load_gltf(scene, transport.load).scene,
-                                                            material_override(transport.materials));
-  const renderer::RayTracer tracer(surfaces);
-  const renderer::Camera camera = choose_camera(surfaces, options.camera, session);
+std::optional<PictureCamera> choose_picture_camera(const IlluminationPictureOptions& options,
+                                                   const renderer::Scene& scene, Session& session) {
+  if (options.file.empty()) return std::nullopt;
+  const renderer::Camera camera = choose_camera(scene, options.camera, session);
   const auto [width, height] = frame_size(camera, options.size);
-  const Image picture = inverse::illumination_picture(tracer, target, {camera, width, height}, session.control());
+  return PictureCamera{camera, width, height};
+}
+
+void save_illumination_picture(const IlluminationPictureOptions& options, const Image& picture) {
   if (is_exr(options.file)) {
     renderer::save_image(picture, options.file, renderer::PixelType::kFloat);
   } else {

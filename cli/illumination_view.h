@@ -1,12 +1,12 @@
 #pragma once
 // Pictures of illumination: what was painted, as a camera sees it.
 
+#include <optional>
 #include <string>
 
 #include "cli/camera_choice.h"
-#include "cli/transport_options.h"
 #include "cli/view_options.h"
-#include "inverse/target/target.h"
+#include "renderer/image/image.h"
 
 namespace chiaro::cli {
 
@@ -31,8 +31,18 @@ void add_illumination_picture_options(CLI::App& command, IlluminationPictureOpti
 // Error or UsageError where there is no such kind of picture, or no such view: asked before the work.
 void require_picture(const IlluminationPictureOptions& options);
 
-// The target, on surfaces of the scene file, into the file: EXR holds cd/m² and alpha, others show them.
-void save_illumination_picture(const IlluminationPictureOptions& options, const std::string& scene,
-                               const TransportOptions& transport, const inverse::Target& target, Session& session);
+// What a picture is taken with.
+struct PictureCamera {
+  renderer::Camera camera;
+  int width = 0, height = 0;
+};
+
+// Absent: no picture is wanted. Error where the scene has no such camera, UsageError where the picture would be too
+// large: asked before the work, too.
+std::optional<PictureCamera> choose_picture_camera(const IlluminationPictureOptions& options,
+                                                   const renderer::Scene& scene, Session& session);
+
+// An illumination picture into the file: EXR holds cd/m² and alpha, others show them.
+void save_illumination_picture(const IlluminationPictureOptions& options, const renderer::Image& picture);
 
 }  // namespace chiaro::cli

@@ -114,6 +114,7 @@ Inspection inspect_vertex_mesh(const std::string& file) {
   const VertexMesh mesh = renderer::load_vertex_mesh(file);
   const IlluminationFigures figures = illumination_figures(mesh);
   Inspection inspection = start_inspection(figures.count > 0 ? "target" : "receivers", file);
+  inspection.warnings = mesh.warnings;
   add_receivers(inspection, mesh);
   if (figures.count == 0) return inspection;
   add_attribute(inspection, mesh);

@@ -24,7 +24,9 @@ float focal_length(const LensOptions& options, const renderer::Camera& camera) {
 }
 
 float distance_in_the_middle(const renderer::Camera& camera, const renderer::RayTracer& tracer) {
-  const auto hit = tracer.intersect(renderer::CameraRays(camera, 2, 2).at({1, 1}));
+  renderer::Ray ray = renderer::CameraRays(camera, 2, 2).at({1, 1});
+  ray.of_camera = true;
+  const auto hit = tracer.intersect(ray);
   return hit ? hit->distance : kAllSharp;
 }
 

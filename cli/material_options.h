@@ -20,7 +20,7 @@ struct MaterialOptions {
 
 void add_material_options(CLI::App& command, MaterialOptions& options);
 
-// --hide-backs, of commands that make frames.
+// --hide-backs, of commands that make frames or read them.
 void add_hide_backs(CLI::App& command, MaterialOptions& options);
 
 renderer::MaterialOverride material_override(const MaterialOptions& options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,8 @@ using renderer::Vec3f;
 
 constexpr float kWhite = 1 - 0.5F / 255;  // or more, as displays show it
 
+float weight_of(float alpha) { return std::isfinite(alpha) ? std::clamp(alpha, 0.0F, 1.0F) : 0; }
+
 // R, G, B, A; a grey picture has three alike, and one without alpha is opaque.
 Image colors_and_alpha(const Image& image, const std::string& file) {
   const bool grey = image.find_channel("R") < 0;
@@ -25,7 +28,8 @@ Image colors_and_alpha(const Image& image, const std::string& file) {
   for (int c = 0; c < 3; ++c) {
     color[std::size_t(c)] = grey ? std::max(image.find_channel("Y"), 0) : image.find_channel(std::string(1, "RGB"[c]));
   }
-  if (*std::min_element(color.begin(), color.end()) < 0 || (grey && image.channel_count() > 2)) {
+  const bool one_grey = image.channel_count() <= 2 && (image.find_channel("Y") >= 0 || renderer::is_grey(image));
+  if (*std::min_element(color.begin(), color.end()) < 0 || (grey && !one_grey)) {
     throw renderer::Error({file, "channels", "has no colours", "R, G and B, or one grey channel"});
   }
   const int alpha = image.find_channel("A");
@@ -37,6 +41,26 @@ Image colors_and_alpha(const Image& image, const std::string& file) {
     }
   }
   return result;
+}
+
+// Of colours as stored, before they are decoded. Whole numbers are no more than white.
+void divide_by_alpha(renderer::ImageFile& picture) {
+  std::vector<float>& pixels = picture.image.pixels;
+  for (std::size_t first = 0; first < pixels.size(); first += 4) {
+    const float alpha = weight_of(pixels[first + 3]);
+    for (std::size_t i = first; i < first + 3 && alpha > 0; ++i) {
+      pixels[i] *= 1 / alpha;
+      if (picture.whole_numbers) pixels[i] = std::min(pixels[i], 1.0F);
+    }
+  }
+}
+
+// R, G, B, A, the colours not multiplied by it, whatever the file has.
+renderer::ImageFile load_colors(const std::string& file) {
+  renderer::ImageFile picture = renderer::load_image(file);
+  picture.image = colors_and_alpha(picture.image, file);
+  if (std::exchange(picture.associated_alpha, false)) divide_by_alpha(picture);
+  return picture;
 }
 
 Vec3f color_at(const Image& image, int x, int y) {
@@ -53,19 +77,9 @@ Vec3f white_of(const Decode& decode) {
   return color_at(white, 0, 0);
 }
 
-// Of a scene-linear picture with alpha the colours are multiplied by it, as OpenEXR has it.
-void divide_by_alpha(PaintedPicture& picture) {
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    if (picture.weight[i] > 0) picture.pixels[i] *= 1 / picture.weight[i];
-  }
-}
-
 void set_alpha(const Image& image, PaintedPicture& picture) {
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const float alpha = image.at(x, y)[3];
-      picture.weight.push_back(std::isfinite(alpha) ? std::clamp(alpha, 0.0F, 1.0F) : 0);
-    }
+    for (int x = 0; x < image.width; ++x) picture.weight.push_back(weight_of(image.at(x, y)[3]));
   }
 }
 
@@ -115,8 +129,8 @@ void undo_exposure(float exposure, PaintedPicture& picture) {
 }  // namespace
 
 PaintedPicture load_painted_picture(const std::string& file, const PictureEncoding& encoding) {
-  const renderer::ImageFile stored = renderer::load_image(file);
-  const Image image = colors_and_alpha(stored.image, file);
+  const renderer::ImageFile stored = load_colors(file);
+  const Image& image = stored.image;
   PaintedPicture picture;
   picture.width = image.width;
   picture.height = image.height;
@@ -129,7 +143,6 @@ PaintedPicture load_painted_picture(const std::string& file, const PictureEncodi
     picture.pixels = renderer::scene_linear_rec709(stored, file, encoding.view.config);
     picture.white = {1, 1, 1};
     picture.encoding = space.empty() ? "scene-linear" : "in " + space;
-    divide_by_alpha(picture);
     undo_exposure(encoding.view.view.exposure, picture);
   } else {
     decode_display(image, encoding, picture);
@@ -138,7 +151,7 @@ PaintedPicture load_painted_picture(const std::string& file, const PictureEncodi
 }
 
 std::vector<float> load_mask(const std::string& file, int width, int height) {
-  const Image mask = colors_and_alpha(renderer::load_image(file).image, file);
+  const Image mask = load_colors(file).image;
   if (mask.width != width || mask.height != height) {
     throw renderer::Error({file, "size", fmt::format("is {} x {}", mask.width, mask.height),
                            fmt::format("{} x {}, as the picture that it masks", width, height)});
@@ -146,8 +159,7 @@ std::vector<float> load_mask(const std::string& file, int width, int height) {
   std::vector<float> weight;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const float value = luminance(color_at(mask, x, y)) * mask.at(x, y)[3];
-      weight.push_back(std::isfinite(value) ? std::clamp(value, 0.0F, 1.0F) : 0);
+      weight.push_back(weight_of(luminance(color_at(mask, x, y)) * mask.at(x, y)[3]));
     }
   }
   return weight;

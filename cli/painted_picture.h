@@ -27,10 +27,11 @@ struct PaintedPicture {
 
 // Files of floats hold scene-linear values, in the space that they name, of whole numbers what the encoding's display
 // and view show, unless the encoding names a space. The exposure is undone. White pixels of a display-referred picture
-// tell only that at least so much is wanted: their weight is 0 unless kept. Error where the file has no colours.
+// tell only that at least so much is wanted: their weight is 0 unless kept. Colours that the file has multiplied by its
+// alpha are divided by it first. Error where the file has no colours.
 PaintedPicture load_painted_picture(const std::string& file, const PictureEncoding& encoding);
 
-// Luminance times alpha of each pixel as the file stores it, 0 to 1. Error where its size is another.
+// Luminance, as the file stores it, times alpha of each pixel, 0 to 1. Error where its size is another.
 std::vector<float> load_mask(const std::string& file, int width, int height);
 
 }  // namespace chiaro::cli

@@ -167,7 +167,7 @@ class TargetLoading {
       return std::move(wanted_);
     }
     if (choices_.file.empty()) {
-      wanted_.target = from_values(choose_receivers(*stage_.tracer, choices_.surface));
+      wanted_.target = from_values(choose_receivers(*stage_.tracer, choices_.surface, session_));
     } else {
       const inverse::Target painted = from_file();
       wanted_.target = inverse::combine(painted, from_values(painted.receivers));
@@ -179,6 +179,7 @@ class TargetLoading {
   inverse::Target from_file() const {
     inverse::Target target = inverse::load_target(choices_.file, choices_.scale);
     require_same_scene(*stage_.tracer, target.receivers, choices_.file);
+    session_.warn(target.warnings);
     if (choices_.scale != 1 && !target.has_scaled_colors) {
       session_.warn(
           fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", choices_.file));

@@ -74,10 +74,13 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
   command.get_option("--max-edge")->excludes("--on");
 }
 
-inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options) {
+inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options,
+                                    Session& session) {
   if (options.on.empty()) return inverse::make_receivers(tracer.scene(), {.max_edge = options.max_edge});
-  inverse::Receivers receivers = inverse::receivers_from_mesh(renderer::load_vertex_mesh(options.on));
+  const renderer::VertexMesh mesh = renderer::load_vertex_mesh(options.on);
+  inverse::Receivers receivers = inverse::receivers_from_mesh(mesh);
   require_same_scene(tracer, receivers, options.on);
+  for (const std::string& warning : mesh.warnings) session.warn(fmt::format("{}: {}", options.on, warning));
   return receivers;
 }
 

@@ -7,6 +7,7 @@
 #include "cli/environment_options.h"
 #include "cli/material_options.h"
 #include "cli/option_values.h"
+#include "cli/session.h"
 #include "inverse/transport/light_grid.h"
 #include "inverse/transport/receivers.h"
 #include "inverse/transport/transport_cache.h"
@@ -49,8 +50,9 @@ struct SurfaceOptions {
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
 void add_max_edge_option(CLI::App& command, float& max_edge);
 
-// Those of the file given with --on, or made from the scene. Error where the file belongs to another scene.
-inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options);
+// Those of the file given with --on, whose warnings are passed on, or made from the scene. Error where the file belongs
+// to another scene.
+inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options, Session& session);
 
 // Error where fewer than half of the receivers of `file` lie on the scene's surface.
 void require_same_scene(const renderer::RayTracer& tracer, const inverse::Receivers& receivers,

@@ -68,7 +68,8 @@ void apply_to_receiver(Target& target, const Stroke& stroke, const TouchedReceiv
 }
 
 void check_options(const PaintOptions& options) {
-  if (std::isfinite(options.unpainted_weight) && options.unpainted_weight >= 0) return;
+  const float weight = options.unpainted_weight.value_or(0);
+  if (std::isfinite(weight) && weight >= 0) return;
   throw renderer::Error({"", "option --unpainted-weight", "is negative or not finite", "a number ≥ 0"});
 }
 
@@ -78,7 +79,8 @@ PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions
   check_options(options);
   CHIARO_CHECK(base.illumination.size() == base.receivers.size());
   PaintResult result{base, {}, {}};
-  result.target.weight.assign(base.receivers.size(), options.unpainted_weight);
+  if (options.unpainted_weight) result.target.weight.assign(base.receivers.size(), *options.unpainted_weight);
+  CHIARO_CHECK(result.target.weight.size() == base.receivers.size());
   const ReceiverSurface surface = make_receiver_surface(base.receivers);
   for (const Stroke& stroke : strokes.strokes) {
     CHIARO_CHECK(stroke.radius > 0 && !stroke.path.empty());

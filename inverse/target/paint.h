@@ -44,7 +44,7 @@ struct Strokes {
 Strokes load_strokes(const std::filesystem::path& path);
 
 struct PaintOptions {
-  float unpainted_weight = 0.05F;
+  std::optional<float> unpainted_weight = 0.05F;  // where no stroke touches; absent: the base's weights
 };
 
 struct PaintResult {
@@ -54,8 +54,8 @@ struct PaintResult {
       far_points;  // per stroke: of its path, farther than its radius from any surface
 };
 
-// Applies the strokes in order to `base` (its illumination is what the strokes change; its weights become
-// unpainted_weight where no stroke touches). Values are held between 0 and renderer::kBrightest.
+// Applies the strokes in order to `base`: its illumination is what they change, and unpainted_weight, or else its own
+// weights, what they bring nearer to theirs. Values are held between 0 and renderer::kBrightest.
 PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options);
 
 }  // namespace chiaro::inverse

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "inverse/transport/receivers.h"
@@ -10,10 +11,11 @@ namespace chiaro::inverse {
 // Wanted illumination: what somebody painted.
 struct Target {
   Receivers receivers;
-  std::vector<Vec3f> illumination;    // cd/m² per receiver
-  std::vector<float> weight;          // per receiver, ≥ 0
-  std::vector<float> standard_error;  // cd/m² per receiver; empty: not known
-  bool has_scaled_colors = false;     // some of it is COLOR_0 times a target's scale
+  std::vector<Vec3f> illumination;         // cd/m² per receiver
+  std::vector<float> weight;               // per receiver, ≥ 0
+  std::vector<float> standard_error;       // cd/m² per receiver; empty: not known
+  bool has_scaled_colors = false;          // some of it is COLOR_0 times a target's scale
+  std::vector<std::string> warnings = {};  // one line each, naming the file that it was read from: what was left out
 };
 
 // `.glb`/`.gltf` with _ILLUMINATION, or COLOR_0 × target_scale (cd/m²) where that is absent. Error where a file has

@@ -144,6 +144,12 @@ void check_window(const OIIO::ImageSpec& spec, const std::string& file) {
                fmt::format("at most {} pixels", kMaxPadded)});
 }
 
+// OpenImageIO does not say of all formats whose colours never are multiplied that they are not.
+bool has_associated_alpha(const OIIO::ImageSpec& spec, std::string_view format) {
+  if (spec.alpha_channel < 0 || format == "png" || format == "webp" || format == "bmp" || format == "ico") return false;
+  return format == "openexr" || spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+}
+
 ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& path) {
   const OIIO::ImageSpec& spec = input.spec();
   check_size(spec, path.string());
@@ -151,6 +157,7 @@ ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& 
   ImageFile file;
   file.image = Image{spec.full_width, spec.full_height, spec.channelnames, {}};
   const bool exr = std::strcmp(input.format_name(), "openexr") == 0;
+  file.associated_alpha = has_associated_alpha(spec, input.format_name());
   file.whole_numbers = !spec.format.is_floating_point();
   file.srgb_curve =
       file.whole_numbers && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");

@@ -60,7 +60,7 @@ class RuleCheck {
     const auto member = value.find(key);
     const std::string inner = place.empty() ? std::string(key) : fmt::format("{}.{}", place, key);
     if (member != value.end()) return step(*member, rest, rest.empty(), inner);
-    if (rest.empty() && rule_.required) fail(file_, inner, "is missing");
+    if (rest.empty() && rule_.required) fail(file_, inner, "is missing", inner == "asset" ? "a glTF 2.0 scene" : "");
   }
 
   void step(json& value, std::string_view rest, bool last, const std::string& place) {

@@ -1,6 +1,5 @@
 #include "renderer/io/light_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string_view>
@@ -26,6 +25,8 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+
+constexpr const char* kDefaultType = "point";
 
 using OcioConfig = std::optional<std::filesystem::path>;
 
@@ -147,7 +148,7 @@ EnvironmentLight read_environment_light(const Entry& entry, std::vector<std::str
 
 Light read_light(const Entry& entry, const std::string& default_name, std::vector<std::string>& warnings) {
   if (!entry.fields.is_object()) throw Error({entry.file, entry.place, "is not an object", "a light"});
-  const std::string type = read_string(entry, "type", "point"), name = read_string(entry, "name", default_name);
+  const std::string type = read_string(entry, "type", kDefaultType), name = read_string(entry, "name", default_name);
   if (type == "point") return PointLight{name, read_position(entry), read_intensity(entry, "candela")};
   if (type == "spot") return read_spot(entry, name);
   if (type == "directional") return DirectionalLight{name, read_direction(entry), read_intensity(entry, "lux")};
@@ -155,19 +156,25 @@ Light read_light(const Entry& entry, const std::string& default_name, std::vecto
   fail(entry, "type", fmt::format("is \"{}\"", type.substr(0, 40)), "point, spot, directional or environment");
 }
 
-// What a light of any type may have. A solve's summary says more of each.
-constexpr std::string_view kKnownFields[] = {
-    "type",  "name",     "position",     "direction",  "intensity", "inner_cone_angle", "outer_cone_angle",
-    "image", "rotation", "contribution", "interval_90"};
+using FieldNames = std::set<std::string_view>;
 
-// Each once.
+// What a light of a type may have. A solve's summary says more of each.
+FieldNames known_fields(const std::string& type) {
+  FieldNames known{"type", "name", "intensity", "contribution", "interval_90"};
+  if (type == "point" || type == "spot") known.insert("position");
+  if (type == "spot" || type == "directional") known.insert("direction");
+  if (type == "spot") known.merge(FieldNames{"inner_cone_angle", "outer_cone_angle"});
+  if (type == "environment") known.merge(FieldNames{"image", "rotation"});
+  return known;
+}
+
+// Each once. Of lights whose type is known.
 std::set<std::string> unknown_fields(const json& lights) {
   std::set<std::string> unknown;
   for (const json& light : lights) {
+    const FieldNames known = known_fields(light.value("type", kDefaultType));
     for (const auto& [name, value] : light.items()) {
-      if (std::find(std::begin(kKnownFields), std::end(kKnownFields), name) == std::end(kKnownFields)) {
-        unknown.insert(name.substr(0, 40));
-      }
+      if (!known.contains(name)) unknown.insert(name.substr(0, 40));
     }
   }
   return unknown;

@@ -29,22 +29,12 @@ Vec3f unit(const Vec3d& v) {
 }
 
 std::size_t drop_degenerate_triangles(Mesh& mesh) {
-  return std::erase_if(mesh.triangles, [&](const Triangle& t) { return length(area_vector(mesh.positions, t)) == 0; });
+  return std::erase_if(mesh.triangles, [&](const Triangle& t) { return !has_area(mesh.positions, t); });
 }
 
 void drop_unused_vertices(Mesh& mesh) {
-  std::vector<std::uint32_t> new_index(mesh.positions.size(), 0), sources;
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) new_index[v] = 1;
-  }
-  for (std::uint32_t v = 0; v < new_index.size(); ++v) {
-    if (new_index[v] == 0) continue;
-    new_index[v] = std::uint32_t(sources.size());
-    sources.push_back(v);
-  }
-  if (sources.size() == mesh.positions.size()) return;
-  for (Triangle& t : mesh.triangles) t = {new_index[t[0]], new_index[t[1]], new_index[t[2]]};
-  gather_vertices(mesh, sources);
+  const std::vector<std::uint32_t> sources = keep_used_vertices(mesh.triangles, mesh.positions.size());
+  if (sources.size() < mesh.positions.size()) gather_vertices(mesh, sources);
 }
 
 void unshare_vertices(Mesh& mesh) {
@@ -143,6 +133,25 @@ void repair_mesh(Mesh& mesh, MeshRepairs& repairs) {
   repairs.bad_tangent_meshes += repair_tangents(mesh) ? 0 : 1;
   for (std::vector<Vec2f>& uv : mesh.uv) repairs.bad_coordinates += repair_uv(uv);
   repairs.bad_coordinates += repair_colors(mesh.colors);
+}
+
+std::vector<std::uint32_t> keep_used_vertices(std::vector<Triangle>& triangles, std::size_t vertex_count) {
+  std::vector<std::uint32_t> new_index(vertex_count, 0), sources;
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t v : t) new_index[v] = 1;
+  }
+  for (std::uint32_t v = 0; v < new_index.size(); ++v) {
+    if (new_index[v] == 0) continue;
+    new_index[v] = std::uint32_t(sources.size());
+    sources.push_back(v);
+  }
+  if (sources.size() == vertex_count) return sources;
+  for (Triangle& t : triangles) t = {new_index[t[0]], new_index[t[1]], new_index[t[2]]};
+  return sources;
+}
+
+bool has_area(const std::vector<Vec3f>& positions, const Triangle& triangle) {
+  return length(area_vector(positions, triangle)) != 0;
 }
 
 std::vector<Vec3f> smooth_normals(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {

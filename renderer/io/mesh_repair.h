@@ -2,6 +2,8 @@
 // Meshes as files have them, made into what the renderer asks for.
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "renderer/scene/scene.h"
 
@@ -21,6 +23,13 @@ struct MeshRepairs {
 // triangle then has vertices of its own), and repairs normals, tangents, texture coordinates and colours that are not
 // usable.
 void repair_mesh(Mesh& mesh, MeshRepairs& repairs);
+
+// Numbers the triangles' corners by the vertices that they use alone. Returns those, in their order, by the old
+// numbers.
+std::vector<std::uint32_t> keep_used_vertices(std::vector<Triangle>& triangles, std::size_t vertex_count);
+
+// Tells slivers, however thin, from triangles of zero area.
+bool has_area(const std::vector<Vec3f>& positions, const Triangle& triangle);
 
 // Per vertex the sum of its triangles' normals weighted by area, unit length; (0, 1, 0) where that vanishes.
 std::vector<Vec3f> smooth_normals(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles);

@@ -7,7 +7,6 @@
 
 #include "renderer/core/control.h"
 #include "renderer/io/gltf_morph_targets.h"
-#include "renderer/io/gltf_primitives.h"
 #include "renderer/io/gltf_skins.h"
 #include "renderer/io/gltf_variants.h"
 #include "renderer/io/mesh_tangents.h"
@@ -84,14 +83,13 @@ class JobRunner {
 
   JobResult run(const Job& job) const {
     JobResult result;
-    result.mesh = read_primitive(document_, job.ref);
-    if (!result.mesh) return result;
+    const std::vector<Mat4f>* const skin = job.skin < 0 ? nullptr : &skins_[std::size_t(job.skin)];
+    std::optional<PosedPrimitive> posed = read_posed_primitive(document_, job.ref, job.weights, skin);
+    if (!posed) return result;
+    result.in_world = posed->in_world;
+    result.repairs.bad_skin_weights = posed->mended_skin_weights;
+    result.mesh = std::move(posed->mesh);
     result.mesh->material = material_in_variant(document_, job.ref, variant_, result.mesh->material);
-    add_morph_targets(document_, job.ref, job.weights, *result.mesh);
-    result.in_world = job.skin >= 0 && has_joints(document_, job.ref);
-    if (result.in_world) {
-      result.repairs.bad_skin_weights += skin_mesh(document_, job.ref, skins_[std::size_t(job.skin)], *result.mesh);
-    }
     repair_mesh(*result.mesh, result.repairs);
     make_missing_tangents(scene_, *result.mesh);
     result.mesh->positions.reserve(result.mesh->positions.size() + 1);  // so that the ray tracer may share them
@@ -132,6 +130,19 @@ Material default_material() {
   Material material;
   material.name = "default";
   return material;
+}
+
+std::optional<PosedPrimitive> read_posed_primitive(const GltfDocument& document, const GltfPrimitiveRef& ref,
+                                                   const std::vector<float>& weights,
+                                                   const std::vector<Mat4f>* world_from_bind) {
+  std::optional<Mesh> mesh = read_primitive(document, ref);
+  if (!mesh) return std::nullopt;
+  PosedPrimitive posed;
+  posed.mesh = *std::move(mesh);
+  add_morph_targets(document, ref, weights, posed.mesh);
+  posed.in_world = world_from_bind != nullptr && has_joints(document, ref);
+  if (posed.in_world) posed.mended_skin_weights = skin_mesh(document, ref, *world_from_bind, posed.mesh);
+  return posed;
 }
 
 NodeMeshList read_node_meshes(const GltfDocument& document, const std::vector<PlacedNode>& nodes,

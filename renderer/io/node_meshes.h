@@ -6,9 +6,23 @@
 
 #include "renderer/io/gltf_document.h"
 #include "renderer/io/gltf_nodes.h"
+#include "renderer/io/gltf_primitives.h"
 #include "renderer/io/mesh_repair.h"
 
 namespace chiaro::renderer {
+
+// A primitive in the shape that a node gives it.
+struct PosedPrimitive {
+  Mesh mesh;
+  bool in_world = false;                // moved by a skin, which leaves the node's own transform out
+  std::size_t mended_skin_weights = 0;  // vertices
+};
+
+// With its morph targets by their weights, and moved by the skin whose world_from_bind is given, if any. Not repaired.
+// Absent where read_primitive is.
+std::optional<PosedPrimitive> read_posed_primitive(const GltfDocument& document, const GltfPrimitiveRef& ref,
+                                                   const std::vector<float>& weights,
+                                                   const std::vector<Mat4f>* world_from_bind);
 
 // Indices into Scene::meshes, one per primitive that has triangles.
 struct NodeMeshes {

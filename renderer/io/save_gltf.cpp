@@ -142,7 +142,8 @@ void add_lights(ordered_json& root, const Lights& lights) {
   use_extension(root);
 }
 
-// Definitions that several nodes share become their own.
+// Definitions that several nodes share become their own. A range, which the intensities given do not know of, would cut
+// them off in other programs.
 void relight(ordered_json& root, const std::vector<int>& nodes, const Lights& lights) {
   CHIARO_CHECK(nodes.size() == lights.size());
   const auto light_of = [](ordered_json& node) -> ordered_json* {
@@ -161,7 +162,9 @@ void relight(ordered_json& root, const std::vector<int>& nodes, const Lights& li
       definitions.push_back(ordered_json(definitions[light->get<std::size_t>()]));
       *light = definitions.size() - 1;
     }
-    set_intensity(definitions[light->get<std::size_t>()], intensity_of(lights[k]));
+    ordered_json& definition = definitions[light->get<std::size_t>()];
+    set_intensity(definition, intensity_of(lights[k]));
+    definition.erase("range");
   }
 }
 

@@ -23,10 +23,13 @@ struct VertexMeshPart {
 
 struct VertexMesh {
   std::vector<VertexMeshPart> parts;
+  std::vector<std::string> warnings = {};  // one line each, of what was left out in reading
 };
 
-// One part per node and primitive, node transforms applied (ours are identity). Normals are made where absent. Error
-// for anything load_gltf refuses, and for attributes that are not finite, of the wrong kind, or negative weights.
+// One part per primitive and instance, in the order and at the place that load_gltf has them: node transforms (ours are
+// identity), instances, skins and morph targets as the file stands at rest, without hidden nodes. Only triangles count,
+// and vertices that they use. Normals are made where absent. Error for shapes that load_gltf refuses, for a file that
+// shows no triangles, and for attributes that are not finite, of the wrong kind, or negative weights.
 VertexMesh load_vertex_mesh(const std::filesystem::path& path);
 
 // One node and mesh per part. Where illumination is given it is also written, clamped to 0..1 after dividing by

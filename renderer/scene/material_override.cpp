@@ -10,8 +10,6 @@ void make_diffuse(Material& material) {
   material.roughness = 1;
   material.metallic_roughness_texture = {};
   material.normal_texture = {};
-  material.emission = {};
-  material.emission_texture = {};
   material.unlit = false;
   material.layers.reset();
 }

@@ -8,12 +8,12 @@ namespace chiaro::renderer {
 
 enum class MaterialModel : std::uint8_t {
   kGltf,     // as the file says
-  kDiffuse,  // Lambert of the base colour, opaque; no normal maps, no emission, no layers; alpha kept
+  kDiffuse,  // Lambert of the base colour, without normal maps and layers; alpha and emission kept
 };
 
 struct MaterialOverride {
   MaterialModel model = MaterialModel::kGltf;
-  std::optional<Vec3f> albedo;  // every surface a Lambert of this; alpha kept, no emission
+  std::optional<Vec3f> albedo;  // every surface a Lambert of this; alpha and emission kept
   bool hide_backs = false;      // of single-sided surfaces that do not transmit, from cameras, as viewers do
 };
 

@@ -91,6 +91,31 @@ TEST(CliRender, NoiseOfOneSampleIsNotKnown) {
   }
 }
 
+std::string white_sky(const TemporaryFolder& folder) {
+  renderer::Image sky = renderer::make_image(2, 1, {"R", "G", "B"});
+  sky.pixels.assign(sky.pixels.size(), 1);
+  renderer::save_image(sky, folder / "sky.exr", renderer::PixelType::kHalf);
+  return folder / "sky.exr";
+}
+
+TEST(CliRender, HeadersNameFilesAndLimits) {
+  const TemporaryFolder folder;
+  const std::string lights =
+      folder.write("lights.json", R"({"lights":[{"position":[0,1,0],"intensity":[1,1,1]}]})").string();
+  const Outcome outcome =
+      render_preview(folder, {"--lights", lights, "--environment", white_sky(folder), "--time", "900"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+  const renderer::Attributes attributes = renderer::load_image_header(folder / "frame.exr").attributes;
+  ASSERT_NE(text_of(attributes, "chiaro:lights"), nullptr);
+  EXPECT_EQ(*text_of(attributes, "chiaro:lights"), "lights.json");
+  ASSERT_NE(text_of(attributes, "chiaro:environment"), nullptr);
+  EXPECT_EQ(*text_of(attributes, "chiaro:environment"), "sky.exr");
+  const auto limit = std::find_if(attributes.begin(), attributes.end(),
+                                  [](const auto& attribute) { return attribute.first == "chiaro:time_limit"; });
+  ASSERT_NE(limit, attributes.end());
+  EXPECT_EQ(std::get<float>(limit->second), 900);
+}
+
 TEST(CliPaint, PicturesAreAsBrightAsTheIllumination) {
   const TemporaryFolder folder;
   const std::string strokes =
@@ -136,6 +161,46 @@ TEST(CliPaint, LightThatIsNotTracedIsTold) {
   EXPECT_NE(turned.standard_error.find("there is no environment"), std::string::npos) << turned.standard_error;
 }
 
+// On the balls, parts of which hardly face the side that is painted from.
+TEST(CliPaint, StrokesOnATargetBeginFromItsWeights) {
+  const TemporaryFolder folder;
+  const auto paint = [&](const std::string& strokes, const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "paint", kScenes + "fiveballs.glb", "--strokes", folder.write("s.json", strokes).string(), "-o", folder / name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_with(arguments);
+    EXPECT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+    return inverse::load_target(folder / name).weight;
+  };
+  const std::string all = R"("radius":20,"distance":"space","facing":false,"falloff":"hard","path":[[0,0,0]])";
+  const std::string base = folder / "base.glb";
+  paint(R"({"strokes":[{"color":[1,1,1],"weight":0.05,)" + all + "}]}", "base.glb", {"--max-edge", "0.2"});
+  const std::string dab =
+      R"({"strokes":[{"mode":"set","opacity":0,"color":[0,0,0],"radius":1.2,"path":[[0.55,1.1,-1.35]],"weight":5}]})";
+  const std::vector<float> kept = paint(dab, "kept.glb", {"--from", base});
+  EXPECT_EQ(kept, paint(dab, "given.glb", {"--from", base, "--unpainted-weight", "0.05"}));
+  const auto between = [](float weight) { return weight > 0.05F && weight < 5; };
+  EXPECT_TRUE(std::any_of(kept.begin(), kept.end(), between));
+  EXPECT_LE(*std::max_element(kept.begin(), kept.end()), 5);
+  paint(R"({"strokes":[{"color":[1,1,1],"weight":2e38,)" + all + "}]}", "heavy.glb", {"--from", base});
+}
+
+TEST(CliPaint, PicturesThatCannotBeAreFoundBeforeThePainting) {
+  const TemporaryFolder folder;
+  const std::string strokes =
+      folder.write("s.json", R"({"strokes":[{"color":[1,1,1],"radius":9,"path":[[0,0,0]]}]})").string();
+  const std::string painted = folder / "painted.glb";
+  const auto paint = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"paint",     kScenes + "cornell.glb", "--strokes", strokes, "-o", painted,
+                                       "--picture", folder / "picture.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_with(arguments).exit_code;
+  };
+  EXPECT_EQ(paint({"--camera", "nobody"}), kFailed);
+  EXPECT_EQ(paint({"--width", "60000", "--height", "60000"}), kWrongUsage);
+  EXPECT_FALSE(std::filesystem::exists(painted));
+}
+
 TEST(CliSolve, AScaleOfWhatIsNotScaledIsTold) {
   const TemporaryFolder folder;
   const std::string scene = kScenes + "cornell.glb", target = folder / "target.glb";
@@ -147,6 +212,72 @@ TEST(CliSolve, AScaleOfWhatIsNotScaledIsTold) {
   EXPECT_EQ(solved.exit_code, kDone) << solved.standard_error;
   expect_told(solved, "--target-scale: does nothing with " + target + ", whose _ILLUMINATION is in cd/m²");
   expect_told(solved, "--keep-white: does nothing without --target-image or --target-lightmap");
+}
+
+// Caches of the box, with receivers of their own.
+struct Baked {
+  Outcome outcome;
+  std::string file;
+};
+
+Baked bake(const TemporaryFolder& folder, const std::string& name, const std::vector<std::string>& more) {
+  const std::string file = folder / name;
+  std::vector<std::string> arguments{
+      "bake", kScenes + "cornell.glb", "-o", file, "--grid", "2,2,2", "--samples", "1", "--bounces", "0"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return {run_with(arguments), file};
+}
+
+TEST(CliBake, AnEnvironmentIsToldToDoNothing) {
+  const TemporaryFolder folder;
+  const Outcome baked = bake(folder, "cache.exr", {"--max-edge", "1", "--environment", white_sky(folder)}).outcome;
+  EXPECT_EQ(baked.exit_code, kDone) << baked.standard_error;
+  expect_told(baked, "--environment: does nothing in a bake, which is the same under any environment");
+}
+
+TEST(CliSolve, OptionsThatACacheOrATargetFileLeavesIdleAreTold) {
+  const TemporaryFolder folder;
+  const std::string scene = kScenes + "cornell.glb", target = folder / "target.glb";
+  run_with({"illuminate", scene, "-o", target, "--max-edge", "1", "--samples", "4", "--bounces", "0"});
+  const Baked cache = bake(folder, "cache.exr", {"--on", target});
+  ASSERT_EQ(cache.outcome.exit_code, kDone) << cache.outcome.standard_error;
+  const Outcome solved = run_with({"solve", scene, "--target", target, "--cache", cache.file, "--samples", "9",
+                                   "--hide-backs", "--keep-positions", "-o", folder / "lights.glb"});
+  EXPECT_EQ(solved.exit_code, kDone) << solved.standard_error;
+  expect_told(solved, "--samples: does nothing with --cache, which was baked with its own");
+  expect_told(solved, "--hide-backs: does nothing without --target-image");
+}
+
+TEST(CliCompare, SaysWhichKindsOfFilesItIsGiven) {
+  const TemporaryFolder folder;
+  const std::string cache = bake(folder, "cache.exr", {"--max-edge", "1"}).file;
+  const std::string frame = folder / "frame.exr", scene = kScenes + "cornell.glb";
+  renderer::save_image(renderer::make_image(2, 1, {"R", "G", "B"}), frame, renderer::PixelType::kHalf);
+  for (const auto& [file, kind] : {std::pair{cache, "a transport cache"}, {frame, "a frame"}}) {
+    const Outcome outcome = run_with({"compare", scene, file});
+    EXPECT_EQ(outcome.exit_code, kFailed);
+    EXPECT_NE(outcome.standard_error.find(file + " is " + kind), std::string::npos) << outcome.standard_error;
+  }
+}
+
+TEST(CliInspect, PartsOfCachesSayWhichOfHowMany) {
+  const TemporaryFolder folder;
+  const json whole = json::parse(
+      run_with({"inspect", bake(folder, "whole.exr", {"--max-edge", "0.2"}).file, "--json"}).standard_output);
+  EXPECT_EQ(whole["kind"], "transport cache");
+  const Baked part = bake(folder, "part.exr", {"--max-edge", "0.2", "--shard", "2/2"});
+  ASSERT_EQ(part.outcome.exit_code, kDone) << part.outcome.standard_error;
+  const Outcome inspected = run_with({"inspect", part.file, "--json"});
+  ASSERT_EQ(inspected.exit_code, kDone) << inspected.standard_error;
+  const json found = json::parse(inspected.standard_output);
+  EXPECT_EQ(found["kind"], "part of a transport cache");
+  EXPECT_EQ(found["receivers"], whole["receivers"]);
+  EXPECT_EQ(found["lights"], whole["lights"]);
+  EXPECT_GT(found["part"]["first_receiver"], 0);
+  EXPECT_EQ(found["part"]["last_receiver"], int(whole["receivers"]) - 1);
+  const std::string bytes = renderer::read_file(part.file);
+  const auto cut = folder.write("cut.exr", bytes.substr(0, bytes.size() - 100));
+  EXPECT_EQ(run_with({"inspect", cut.string()}).exit_code, kFailed);
 }
 
 TEST(CliIlluminate, OnePathWritesNoStandardErrors) {
@@ -193,6 +324,16 @@ TEST(CliRender, LensesAreWrittenIntoTheHeaderAndNeedAnFNumber) {
   EXPECT_EQ(render_preview(folder, {"--shutter", "0.1"}).exit_code, kWrongUsage);
   EXPECT_EQ(render_preview(folder, {"--f-number", "2", "--shutter", "0.1", "--exposure", "auto"}).exit_code,
             kWrongUsage);
+}
+
+TEST(CliRender, ShuttersThatExposeNothingAreTold) {
+  const TemporaryFolder folder;
+  const std::string line = "--shutter: exposes nothing without --preview";
+  const Outcome alone = run_with({"render", kScenes + "cornell.glb", "-o", folder / "frame.exr", "--width", "4",
+                                  "--samples", "1", "--f-number", "2", "--shutter", "0.02"});
+  EXPECT_EQ(alone.exit_code, kDone) << alone.standard_error;
+  expect_told(alone, line);
+  expect_told(render_preview(folder, {"--f-number", "2", "--shutter", "0.02"}), line, false);
 }
 
 std::string grey_frame(const TemporaryFolder& folder, const std::string& name, float grey) {
@@ -279,6 +420,22 @@ TEST(CliInspect, ValuesInCandelaComeBeforeColours) {
   const json found = inspected(write_foreign_mesh(folder, {node}));
   EXPECT_EQ(found["attribute"], "_ILLUMINATION");
   EXPECT_EQ(found["mean_illumination"], json::array({7.0, 7.0, 7.0}));
+}
+
+TEST(CliInspect, WhatATargetLosesInReadingIsTold) {
+  const TemporaryFolder folder;
+  json gltf = json::parse(renderer::read_file(write_foreign_mesh(folder, {kColoured})));
+  gltf["extensionsUsed"] = {"EXT_of_nobody"};
+  const std::string file = folder.write("target.gltf", gltf.dump()).string();
+  const std::string lost = "extension EXT_of_nobody is not read; what it changes is left out";
+  EXPECT_EQ(inspected(file)["warnings"], json::array({lost}));
+  const std::string strokes =
+      folder.write("s.json", R"({"strokes":[{"color":[1,1,1],"radius":9,"path":[[0,0,0]]}]})").string();
+  for (const char* option : {"--on", "--from"}) {
+    const Outcome painted = run_with({"paint", file, "--strokes", strokes, option, file, "-o", folder / "painted.glb"});
+    EXPECT_EQ(painted.exit_code, kDone) << painted.standard_error;
+    expect_told(painted, file + ": " + lost);
+  }
 }
 
 TEST(CliInspect, ColouredSurfacesWithMaterialsAreAScene) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "cli/camera_choice.h"
@@ -42,6 +43,24 @@ Camera camera_looking_along_x() {
 }
 
 void expect_near(Vec3f a, Vec3f b) { EXPECT_LT(renderer::length(a - b), 1e-5F) << a.x << " " << a.y << " " << a.z; }
+
+// Those of ours; of the first two their names alone.
+std::string text_of(const renderer::Attributes& attributes) {
+  std::string text;
+  for (const auto& [name, value] : attributes) {
+    if (!name.starts_with("chiaro:")) continue;
+    text += name.substr(7);
+    if (const auto* words = std::get_if<std::string>(&value)) {
+      if (name != "chiaro:version" && name != "chiaro:units") text += "=" + *words;
+    } else if (const auto* number = std::get_if<float>(&value)) {
+      text += fmt::format("={:g}", *number);
+    } else {
+      text += fmt::format("={}", std::get<int>(value));
+    }
+    text += "|";
+  }
+  return text;
+}
 
 TEST(CliFrameMetadata, WorldToCameraLooksAlongMinusZ) {
   const auto matrix = matrix_named(frame_attributes(camera_looking_along_x(), 2, {}), "worldToCamera");
@@ -86,6 +105,21 @@ TEST(CliFrameMetadata, SameFrameHasTheSameAttributes) {
   const FrameOrigin origin{.scene = "a.glb", .materials = "gltf", .seed = 7, .bounces = 2};
   EXPECT_EQ(frame_attributes(camera_looking_along_x(), 2, origin),
             frame_attributes(camera_looking_along_x(), 2, origin));
+}
+
+TEST(CliFrameMetadata, HoldsWhatWasChosen) {
+  FrameOrigin origin{.scene = "a.glb", .materials = "gltf", .seed = 7, .bounces = 2};
+  EXPECT_EQ(text_of(frame_attributes({}, 2, origin)).find("environment"), std::string::npos);
+  origin.hide_backs = true;
+  origin.light_file = "lamps.json";
+  origin.variant = "night";
+  origin.animation = {.animation = "dusk", .seconds = 1.5};
+  origin.environment = renderer::EnvironmentLight{
+      .name = {}, .map = {}, .rotation = renderer::kPi / 2, .intensity = 3, .image = "skies/noon.exr"};
+  EXPECT_EQ(text_of(frame_attributes({}, 2, origin)),
+            "version|units|scene=a.glb|camera=|materials=gltf|bounces=2|seed=7|hide_backs=1|lights=lamps.json|"
+            "variant=night|animation=dusk|animation_time=1.5|environment=noon.exr|environment_rotation=90|"
+            "environment_intensity=3|");
 }
 
 TEST(CliFrameSize, WhatIsMissingComesFromTheAspectRatio) {

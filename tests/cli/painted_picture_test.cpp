@@ -6,6 +6,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
+#include "tests/support/associated_tiff.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::cli {
@@ -65,6 +66,42 @@ TEST_F(PaintedPictureTest, AlphaIsWeightAndDividedOutOfAnExr) {
   EXPECT_EQ(picture.weight, (std::vector<float>{0.5F, 0}));
 }
 
+TEST_F(PaintedPictureTest, AlphaIsDividedOutBeforeANamedSpaceIsConvertedFrom) {
+  const std::string file =
+      save("a.exr", picture_of({"R", "G", "B", "A"}, {0.25F, 0.25F, 0.25F, 0.5F}), renderer::PixelType::kFloat);
+  PictureEncoding encoded = encoding();
+  encoded.space = "scene_linear";
+  EXPECT_NEAR(load_painted_picture(file, encoded).pixels[0].x, 0.5F, 1e-5F);
+  encoded.space = "sRGB - Texture";
+  EXPECT_NEAR(load_painted_picture(file, encoded).pixels[0].x, 0.21404F, 1e-4F);
+}
+
+TEST_F(PaintedPictureTest, AlphaIsDividedOutOfFilesThatSaySoAlone) {
+  const std::string file =
+      save("a.tif", picture_of({"R", "G", "B", "A"}, {0.5F, 0.5F, 0.5F, 0.5F}), renderer::PixelType::kFloat);
+  EXPECT_EQ(load_painted_picture(file, encoding()).pixels[0], (Vec3f{0.5F, 0.5F, 0.5F}));
+  test::set_associated_alpha(file);
+  EXPECT_EQ(load_painted_picture(file, encoding()).pixels[0], (Vec3f{1, 1, 1}));
+}
+
+// Two thirds and white, at an alpha of 0.6.
+TEST_F(PaintedPictureTest, WholeNumbersAreDividedByAlphaAsTheyAreStored) {
+  const float third = 1 / 3.0F;
+  const std::string straight =
+      save("a.png", picture_of({"R", "G", "B", "A"}, {2 * third, third, 0, 0.6F, 1, 1, 1, 0.6F}),
+           renderer::PixelType::kUint8);
+  const std::string multiplied =
+      save("a.tif", picture_of({"R", "G", "B", "A"}, {0.4F, 0.2F, 0, 0.6F, 0.6F, 0.6F, 0.6F, 0.6F}),
+           renderer::PixelType::kUint8);
+  test::set_associated_alpha(multiplied);
+  const PaintedPicture a = load_painted_picture(straight, encoding()), b = load_painted_picture(multiplied, encoding());
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.pixels[i][c], b.pixels[i][c], 1e-5F) << i;
+  }
+  EXPECT_EQ(a.weight, b.weight);
+  EXPECT_EQ(b.white_pixels, 1U);
+}
+
 // The colorimetric sRGB view is the sRGB curve of IEC 61966-2-1.
 TEST_F(PaintedPictureTest, APngGoesBackThroughTheView) {
   const std::string file = save("a.png", picture_of({"R", "G", "B"}, {0.2F, 0.4F, 0.6F}), renderer::PixelType::kUint8);
@@ -106,6 +143,14 @@ TEST_F(PaintedPictureTest, TheSpaceThatAnExrNamesIsConvertedFrom) {
 TEST_F(PaintedPictureTest, WithoutColoursIsRefused) {
   const std::string file = save("a.exr", picture_of({"depth", "id"}, {1, 2}), renderer::PixelType::kFloat);
   EXPECT_THROW(load_painted_picture(file, encoding()), renderer::Error);
+}
+
+TEST_F(PaintedPictureTest, AlphaOfAMaskCountsOnce) {
+  const std::string exr =
+      save("m.exr", picture_of({"R", "G", "B", "A"}, {0.5F, 0.5F, 0.5F, 0.5F}), renderer::PixelType::kFloat);
+  const std::string png = save("m.png", picture_of({"R", "G", "B", "A"}, {1, 1, 1, 0.6F}), renderer::PixelType::kUint8);
+  EXPECT_NEAR(load_mask(exr, 1, 1)[0], 0.5F, 1e-6F);
+  EXPECT_NEAR(load_mask(png, 1, 1)[0], 0.6F, 1e-6F);
 }
 
 TEST_F(PaintedPictureTest, AMaskIsItsLuminance) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -137,6 +138,17 @@ TEST(Paint, WeightsAreTheStrokesWhereTouchedAndElseTheUnpaintedOne) {
   EXPECT_EQ(painted.illumination, std::vector<Vec3f>(81, kBase));
 }
 
+TEST(Paint, WithoutAnUnpaintedWeightThoseOfTheBaseStay) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.weight = 2e38F;
+  Target base = make_target(make_floor(), kBase, 0.25F);
+  base.weight[floor_receiver(8, 8)] = 3e38F;
+  const Target painted = paint(base, {StrokeBase::kCurrent, {stroke}}, {std::nullopt}).target;
+  EXPECT_EQ(painted.weight[floor_receiver(4, 4)], 2e38F);
+  EXPECT_EQ(painted.weight[floor_receiver(0, 0)], 0.25F);
+  EXPECT_EQ(painted.weight[floor_receiver(8, 8)], 3e38F);
+}
+
 TEST(Paint, UnpaintedWeightThatIsNoWeightIsAnError) {
   const auto stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
   EXPECT_THROW(paint_floor(stroke, -1), renderer::Error);
@@ -252,6 +264,22 @@ TEST(PaintFacing, FadesWhereTheSurfaceTurnsAway) {
     EXPECT_NEAR(painted.weight[floor_receiver(x, 4)], 0.5F + facing * 2.5F, 1e-5F);
   }
   EXPECT_EQ(painted.weight[floor_receiver(8, 4)], 0.5F);
+}
+
+TEST(PaintFacing, WeightsOfTheBaseComeNearerToTheStrokesAsReceiversFaceIt) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.radius = 2;
+  stroke.path = {{0, 0, 0.5F}};
+  stroke.weight = 5;
+  Target base = make_target(make_bent_floor(), kBase);
+  for (std::size_t i = 0; i < base.weight.size(); ++i) base.weight[i] = 0.5F + float(i);
+  const auto weight = paint(base, {StrokeBase::kCurrent, {stroke}}, {std::nullopt}).target.weight;
+  for (int x = 1; x <= 8; ++x) {
+    SCOPED_TRACE(x);
+    const float t = std::min(1.0F, float(8 - x) / 24 / 0.2F), facing = t * t * (3 - 2 * t);
+    const float before = base.weight[floor_receiver(x, 4)];
+    EXPECT_NEAR(weight[floor_receiver(x, 4)], before + facing * (5 - before), 1e-4F);
+  }
 }
 
 TEST(PaintFacing, PathsFarAwayTouchNothing) {

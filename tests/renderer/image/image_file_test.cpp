@@ -9,6 +9,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "tests/renderer/io/gltf_builder.h"
+#include "tests/support/associated_tiff.h"
 #include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
@@ -319,6 +320,32 @@ TEST(DecodeTexture, AvifIsReadFromMemoryAndTruncatedOnesAreRefused) {
   for (std::size_t size = 0; size < whole.size(); size += 7) {
     const std::string message = error_of([&] { renderer::decode_texture(whole.substr(0, size), "images[7]"); });
     EXPECT_EQ(message.rfind("images[7]", 0), 0U) << size << " of " << whole.size() << ": " << message;
+  }
+}
+
+TEST(ImageFile, SaysWhetherColoursAreMultipliedByAlpha) {
+  const TemporaryFolder folder;
+  const auto saved = [&](const std::string& name, PixelType type, const std::vector<std::string>& channels) {
+    Image image = make_image(2, 2, channels);
+    image.pixels.assign(image.pixels.size(), 0.2F);
+    save_image(image, folder / name, type);
+    return folder / name;
+  };
+  const auto associated = [](const std::filesystem::path& file) {
+    EXPECT_EQ(renderer::load_image_header(file).associated_alpha, load_image(file).associated_alpha) << file;
+    return load_image(file).associated_alpha;
+  };
+  const std::vector<std::string> rgba{"R", "G", "B", "A"};
+  EXPECT_TRUE(associated(saved("a.exr", PixelType::kHalf, rgba)));
+  EXPECT_FALSE(associated(saved("opaque.exr", PixelType::kHalf, {"R", "G", "B"})));
+  EXPECT_FALSE(associated(saved("a.png", PixelType::kUint8, rgba)));
+  EXPECT_FALSE(associated(folder.write("a.webp", from_base64(kWebp))));
+  for (const PixelType type : {PixelType::kUint8, PixelType::kFloat}) {
+    const auto tiff = saved("a.tif", type, rgba);
+    EXPECT_FALSE(associated(tiff));
+    test::set_associated_alpha(tiff);
+    EXPECT_TRUE(associated(tiff));
+    EXPECT_NEAR(load_image(tiff).image.pixels[0], 0.2F, 1e-6F) << "as stored";
   }
 }
 

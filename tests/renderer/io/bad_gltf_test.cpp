@@ -37,7 +37,7 @@ TEST_P(BadGltf, IsRefusedWithOneLineThatNamesThePlace) {
 using J = ordered_json;
 
 const BadCase kBadCases[] = {
-    {"NoAsset", [](GltfBuilder& g) { g.root.erase("asset"); }, "asset: is missing"},
+    {"NoAsset", [](GltfBuilder& g) { g.root.erase("asset"); }, "asset: is missing (expected a glTF 2.0 scene)"},
     {"Version1", [](GltfBuilder& g) { g.root["asset"]["version"] = "1.0"; }, "asset.version"},
     {"RequiredExtension", [](GltfBuilder& g) { g.root["extensionsRequired"] = {"KHR_materials_dispersion"}; },
      "KHR_materials_dispersion"},

@@ -106,12 +106,14 @@ TEST(GltfMaterialLayers, ValuesOutOfRangeAreClampedWithAWarning) {
 
 TEST(GltfMaterialLayers, ADiffuseSceneHasNone) {
   LoadedScene loaded = load(scene_with(
-      {{"extensions",
+      {{"emissiveFactor", {1, 1, 1}},
+       {"extensions",
         {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_unlit", J::object()}}}}));
   EXPECT_TRUE(loaded.scene.materials[0].unlit);
   const Scene diffuse = with_materials(std::move(loaded.scene), {.model = MaterialModel::kDiffuse, .albedo = {}});
   EXPECT_FALSE(diffuse.materials[0].unlit);
   EXPECT_FALSE(diffuse.materials[0].layers);
+  EXPECT_EQ(diffuse.materials[0].emission, (Vec3f{0, 0, 0})) << "an unlit surface is no lamp";
 }
 
 struct UseCase {

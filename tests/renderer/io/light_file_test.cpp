@@ -53,6 +53,23 @@ TEST(LightFile, WhatIsNotReadIsSaid) {
   EXPECT_EQ(warnings[0], path.string() + ": not read of its lights: note, outer_cone_angel");
 }
 
+TEST(LightFile, FieldsOfOtherTypesAreNotRead) {
+  const TemporaryFolder folder;
+  const auto unread = [&](const std::string& light) {
+    const auto path = folder.write("lights.json", "{\"lights\":[" + light + "]}");
+    std::vector<std::string> warnings;
+    load_lights(path, warnings);
+    const std::string before = path.string() + ": not read of its lights: ";
+    return warnings.empty() ? "" : warnings.at(0).substr(before.size());
+  };
+  const std::string point = R"({"position":[1,2,3],"intensity":[4,5,6])", cone = R"(,"direction":[0,-1,0],
+                    "inner_cone_angle":0.1,"outer_cone_angle":0.3)";
+  EXPECT_EQ(unread(point + cone + "}"), "direction, inner_cone_angle, outer_cone_angle");
+  EXPECT_EQ(unread(point + cone + R"(,"type":"spot"})"), "");
+  EXPECT_EQ(unread(point + cone + R"(,"type":"directional"})"), "inner_cone_angle, outer_cone_angle, position");
+  EXPECT_EQ(unread(point + R"(,"image":"sky.exr","rotation":1})"), "image, rotation");
+}
+
 TEST(LightFile, DirectionsBecomeUnitVectors) {
   const TemporaryFolder folder;
   const auto path =

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "renderer/core/atomic_file.h"
+#include "renderer/io/load_gltf.h"
 #include "tests/renderer/io/gltf_builder.h"
 
 namespace chiaro::renderer::tests {
@@ -79,6 +80,151 @@ TEST(VertexMeshFile, NodesMoveVerticesAndMissingNormalsAreMade) {
   for (const Vec3f& normal : mesh.parts[0].normals) EXPECT_EQ(normal, (Vec3f{0, 0, 1})) << "still the outside";
 }
 
+std::vector<std::vector<Vec3f>> places_in_scene(const std::filesystem::path& path) {
+  const Scene scene = load_gltf(path).scene;
+  std::vector<std::vector<Vec3f>> places;
+  for (const Instance& instance : scene.instances) {
+    places.emplace_back();
+    for (const Vec3f p : scene.meshes[std::size_t(instance.mesh)].positions) {
+      places.back().push_back(transform_point(instance.world_from_object, p));
+    }
+  }
+  return places;
+}
+
+std::vector<std::vector<Vec3f>> places_in_mesh(const std::filesystem::path& path) {
+  std::vector<std::vector<Vec3f>> places;
+  for (const VertexMeshPart& part : load_vertex_mesh(path).parts) places.push_back(part.positions);
+  return places;
+}
+
+// Both readers find it there.
+void expect_places(const GltfBuilder& gltf, const std::vector<std::vector<Vec3f>>& places) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("mesh.glb", gltf.glb());
+  EXPECT_EQ(places_in_mesh(path), places);
+  EXPECT_EQ(places_in_scene(path), places);
+}
+
+// The triangle's corners in the order of joints 0, 1, 1; the joints stand at z = 2 and z = 5.
+GltfBuilder skinned_triangle() {
+  GltfBuilder gltf = triangle_scene();
+  gltf.primitive()["attributes"]["JOINTS_0"] =
+      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4, kUnsignedByte);
+  gltf.primitive()["attributes"]["WEIGHTS_0"] =
+      gltf.add_accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4, kFloat);
+  gltf.add_node({{"translation", {0, 0, 2}}});
+  gltf.add_node({{"translation", {0, 0, 5}}});
+  gltf.root["skins"] = {{{"joints", {1, 2}}}};
+  gltf.root["nodes"][0]["skin"] = 0;
+  gltf.root["nodes"][0]["translation"] = {100, 0, 0};
+  return gltf;
+}
+
+GltfBuilder instanced_triangle(const std::string& attribute, const std::vector<float>& values) {
+  GltfBuilder gltf = triangle_scene();
+  const int accessor = gltf.add_accessor(values, 3, kFloat);
+  gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"][attribute] = accessor;
+  gltf.root["extensionsUsed"] = gltf.root["extensionsRequired"] = ordered_json::array({"EXT_mesh_gpu_instancing"});
+  return gltf;
+}
+
+TEST(VertexMeshFile, EachInstanceIsAPartWithTheValuesOfTheMesh) {
+  GltfBuilder gltf = instanced_triangle("TRANSLATION", {0, 0, 0, 0, 5, 0});
+  gltf.root["nodes"][0]["scale"] = {2, 2, 2};
+  gltf.primitive()["attributes"]["_ILLUMINATION"] = gltf.add_accessor<float>({1, 2, 3, 4, 5, 6, 7, 8, 9}, 3, kFloat);
+  expect_places(gltf, {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 10, 0}, {2, 10, 0}, {0, 12, 0}}});
+  const TemporaryFolder folder;
+  for (const VertexMeshPart& part : load_vertex_mesh(folder.write("mesh.glb", gltf.glb())).parts) {
+    EXPECT_EQ(part.illumination, (std::vector<Vec3f>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));
+  }
+}
+
+TEST(VertexMeshFile, MirroredInstancesKeepTheirOutside) {
+  const TemporaryFolder folder;
+  const GltfBuilder gltf = instanced_triangle("SCALE", {1, 1, 1, -1, 1, 1});
+  const VertexMesh mesh = load_vertex_mesh(folder.write("mesh.glb", gltf.glb()));
+  ASSERT_EQ(mesh.parts.size(), 2U);
+  EXPECT_NE(mesh.parts[0].triangles, mesh.parts[1].triangles);
+  for (const VertexMeshPart& part : mesh.parts) EXPECT_EQ(part.normals.at(0), (Vec3f{0, 0, 1}));
+}
+
+TEST(VertexMeshFile, InstancesScaledToNothingAreLeftOut) {
+  expect_places(instanced_triangle("SCALE", {0, 0, 0, 1, 1, 1}), {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+}
+
+TEST(VertexMeshFile, SkinsMoveVerticesInPlaceOfTheNode) {
+  expect_places(skinned_triangle(), {{{0, 0, 2}, {1, 0, 5}, {0, 1, 5}}});
+}
+
+TEST(VertexMeshFile, ASkinOfAMeshWithoutJointsMovesNothing) {
+  GltfBuilder gltf = skinned_triangle();
+  gltf.primitive()["attributes"].erase("JOINTS_0");
+  expect_places(gltf, {{{100, 0, 0}, {101, 0, 0}, {100, 1, 0}}});
+}
+
+TEST(VertexMeshFile, MorphTargetsCountByTheirWeights) {
+  GltfBuilder gltf = triangle_scene();
+  const int moves = gltf.add_accessor<float>({0, 0, 0, 0, 0, 0, 0, 8, 0}, 3, kFloat);
+  gltf.primitive()["targets"] = ordered_json::array({{{"POSITION", moves}}});
+  gltf.root["meshes"][0]["weights"] = {0.5};
+  expect_places(gltf, {{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}}});
+  gltf.root["nodes"][0]["weights"] = {0.25};
+  expect_places(gltf, {{{0, 0, 0}, {1, 0, 0}, {0, 3, 0}}});
+}
+
+TEST(VertexMeshFile, HiddenNodesAreLeftOut) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.add_node({{"mesh", 0}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
+  expect_places(gltf, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+}
+
+TEST(VertexMeshFile, PointsAndLinesAreNotRead) {
+  GltfBuilder gltf = triangle_scene();
+  for (const int mode : {0, 1, 3}) {
+    const int positions = gltf.add_accessor<float>({9, 9, 9, 8, 8, 8, 7, 7, 7}, 3, kFloat);
+    const int values = gltf.add_accessor<std::uint32_t>({0, 1, 2, 3, 4, 5, 6, 7, 8}, 3, kUnsignedInt);
+    const int mesh = gltf.add_mesh({{"POSITION", positions}, {"_ILLUMINATION", values}});
+    gltf.primitive(mesh)["mode"] = mode;
+    gltf.add_node({{"mesh", mesh}});
+  }
+  expect_places(gltf, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+}
+
+TEST(VertexMeshFile, VerticesThatNoTriangleUsesAreNotRead) {
+  GltfBuilder gltf;
+  const int positions = gltf.add_accessor<float>({0, 0, 0, 1, 0, 0, 1e30F, 0, 0, 0, 1, 0, 9, 9, 9}, 3, kFloat);
+  const int normals = gltf.add_accessor<float>({0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0}, 3, kFloat);
+  const int values = gltf.add_accessor<float>({1, 1, 1, 2, 2, 2, 500, 0, 0, 4, 4, 4, 500, 0, 0}, 3, kFloat);
+  const int weights = gltf.add_accessor<float>({1, 2, 3, 4, 5}, 1, kFloat);
+  gltf.add_mesh({{"POSITION", positions}, {"NORMAL", normals}, {"_ILLUMINATION", values}, {"COLOR_0", values}});
+  for (const char* name : {"_WEIGHT", "_STANDARD_ERROR"}) gltf.primitive()["attributes"][name] = weights;
+  gltf.primitive()["indices"] = gltf.add_accessor<std::uint32_t>({0, 1, 3}, 1, kUnsignedInt);
+  gltf.add_node({{"mesh", 0}});
+  const TemporaryFolder folder;
+  const VertexMesh mesh = load_vertex_mesh(folder.write("mesh.glb", gltf.glb()));
+  ASSERT_EQ(mesh.parts.size(), 1U);
+  const VertexMeshPart& part = mesh.parts[0];
+  const std::vector<Vec3f> used_values{{1, 1, 1}, {2, 2, 2}, {4, 4, 4}};
+  EXPECT_EQ(part.positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(part.normals, (std::vector<Vec3f>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}));
+  EXPECT_EQ(part.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(part.illumination, used_values);
+  EXPECT_EQ(part.color, used_values);
+  EXPECT_EQ(part.weight, (std::vector<float>{1, 2, 4}));
+  EXPECT_EQ(part.standard_error, part.weight);
+}
+
+TEST(VertexMeshFile, WhatItsExtensionsWouldChangeIsSaid) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf = triangle_scene();
+  EXPECT_TRUE(load_vertex_mesh(folder.write("mesh.glb", gltf.glb())).warnings.empty());
+  gltf.root["extensionsUsed"] = {"EXT_of_nobody"};
+  const VertexMesh mesh = load_vertex_mesh(folder.write("mesh.glb", gltf.glb()));
+  ASSERT_EQ(mesh.warnings.size(), 1U);
+  EXPECT_NE(mesh.warnings[0].find("EXT_of_nobody"), std::string::npos) << mesh.warnings[0];
+}
+
 TEST(VertexMeshFile, LinearColourOfOtherProgramsIsRead) {
   const TemporaryFolder folder;
   GltfBuilder gltf = triangle_scene();
@@ -124,10 +270,16 @@ TEST(VertexMeshFile, IntegerIlluminationIsOfTheWrongKind) {
   EXPECT_NE(error_of([&] { load_vertex_mesh(path); }).find("not of floats"), std::string::npos);
 }
 
-TEST(VertexMeshFile, AFileWithoutVerticesIsRefused) {
+TEST(VertexMeshFile, AFileWithoutTrianglesIsRefused) {
   const TemporaryFolder folder;
   save_vertex_mesh({}, folder / "empty.glb", 1);
-  EXPECT_NE(error_of([&] { load_vertex_mesh(folder / "empty.glb"); }).find("no node shows"), std::string::npos);
+  GltfBuilder points = triangle_scene();
+  points.primitive()["mode"] = 0;
+  folder.write("points.glb", points.glb());
+  for (const char* name : {"empty.glb", "points.glb"}) {
+    const std::string message = error_of([&] { load_vertex_mesh(folder / name); });
+    EXPECT_NE(message.find("meshes: no node shows any triangles"), std::string::npos) << message;
+  }
 }
 
 }  // namespace

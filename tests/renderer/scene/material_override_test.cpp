@@ -20,6 +20,32 @@ TEST(MaterialOverride, DiffuseFiltersTexturesAsStoredAndEndsLightAtTheTrianglesH
   EXPECT_TRUE(diffuse.materials[0].geometric_horizon);
 }
 
+TEST(MaterialOverride, WhatEmitsStaysLitAndReflectsAsTheOverrideSays) {
+  Scene scene;
+  Material lamp;
+  lamp.emission = {4, 2, 1};
+  lamp.emission_texture.texture = 0;
+  scene.textures.push_back({"", 1, 1, {255, 255, 0, 255}});
+  lamp.layers.emplace();
+  test::add_mesh(scene, test::rectangle({-1, -1, -2}, {2, 0, 0}, {0, 2, 0}), lamp, "lamp");
+  scene.meshes[0].uv[0].assign(scene.meshes[0].positions.size(), {0, 0});
+  const MaterialOverride overrides[] = {{.model = MaterialModel::kDiffuse, .albedo = {}},
+                                        {.model = MaterialModel::kGltf, .albedo = Vec3f{0.5F, 0.5F, 0.5F}}};
+  for (const MaterialOverride& materials : overrides) {
+    const Scene overridden = with_materials(scene, materials);
+    const float albedo = materials.albedo ? 0.5F : 1;
+    const RayTracer tracer(overridden);
+    RenderOptions options;
+    options.width = options.height = 4;
+    options.trace = {.samples = 4, .bounces = 0};
+    const Lights sun{DirectionalLight{"", {0, 0, -1}, {kPi, kPi, kPi}}};
+    const Image image = render(tracer, {}, sun, options).image;
+    EXPECT_NEAR(image.at(2, 2)[0], 4 + albedo, 1e-4F);
+    EXPECT_NEAR(image.at(2, 2)[1], 2 + albedo, 1e-4F);
+    EXPECT_NEAR(image.at(2, 2)[2], albedo, 1e-4F);
+  }
+}
+
 TEST(MaterialOverride, HidesBacksOfSingleSidedSurfacesThatDoNotTransmit) {
   Scene scene;
   scene.materials.resize(3);
