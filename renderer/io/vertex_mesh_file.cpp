@@ -22,6 +22,7 @@ namespace {
 constexpr const char* kIllumination = "_ILLUMINATION";
 constexpr const char* kWeight = "_WEIGHT";
 constexpr const char* kStandardError = "_STANDARD_ERROR";
+constexpr double kMostVertices = 3e7;  // of the instances of a node
 
 std::string attribute_place(const GltfPrimitiveRef& ref, const char* name) {
   return fmt::format("{}.attributes.{}", place_of(ref), name);
@@ -163,10 +164,21 @@ NodeParts read_parts(const GltfDocument& document, const PlacedNode& node, const
   return parts;
 }
 
+// A small file may have a mesh of many vertices a great many times.
+void require_few_vertices(const GltfDocument& document, const PlacedNode& node, const NodeParts& parts,
+                          std::size_t instances) {
+  double vertices = 0;
+  for (const VertexMeshPart& part : parts.in_node) vertices += double(part.positions.size()) * double(instances);
+  if (vertices <= kMostVertices) return;
+  fail(document, place_of(node), fmt::format("its {} instances have {:.3g} vertices together", instances, vertices),
+       fmt::format("at most {:g}", kMostVertices));
+}
+
 // In the order of a scene's instances.
 void add_instances(const GltfDocument& document, const PlacedNode& node, NodeParts parts, VertexMesh& mesh) {
   for (VertexMeshPart& part : parts.in_world) add_placed(document, node, std::move(part), Mat4f{}, mesh);
   const std::vector<Mat4f> transforms = instance_transforms(document, node);
+  require_few_vertices(document, node, parts, transforms.size());
   for (std::size_t i = 0; i < transforms.size(); ++i) {
     const bool is_last = i + 1 == transforms.size();
     for (VertexMeshPart& part : parts.in_node) {

@@ -140,6 +140,19 @@ TEST(VertexMeshFile, EachInstanceIsAPartWithTheValuesOfTheMesh) {
   }
 }
 
+TEST(VertexMeshFile, InstancesOfMoreVerticesThanMemoryHoldsAreRefused) {
+  constexpr std::size_t kMany = 6000;
+  GltfBuilder gltf = instanced_triangle("TRANSLATION", std::vector<float>(3 * kMany, 0.0F));
+  std::vector<float> positions(3 * kMany);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = float(i * i % 17);
+  gltf.primitive()["attributes"]["POSITION"] = gltf.add_accessor(positions, 3, kFloat);
+  gltf.primitive().erase("indices");
+  const TemporaryFolder folder;
+  const auto path = folder.write("mesh.glb", gltf.glb());
+  const std::string message = error_of([&] { load_vertex_mesh(path); });
+  EXPECT_NE(message.find("nodes[0]: its 6000 instances have 3.6e+07 vertices together"), std::string::npos) << message;
+}
+
 TEST(VertexMeshFile, MirroredInstancesKeepTheirOutside) {
   const TemporaryFolder folder;
   const GltfBuilder gltf = instanced_triangle("SCALE", {1, 1, 1, -1, 1, 1});
