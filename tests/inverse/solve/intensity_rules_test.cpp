@@ -44,7 +44,8 @@ double squared_error(const std::array<WeightedSystem, 3>& systems, const Intensi
 // What one colour is no constraint for: it is that of the limit alone, each channel by itself.
 TEST(IntensityRules, OneLightOfAnyColorIsAsNearAsItsLimitAllows) {
   const auto systems = systems_of(Eigen::RowVector3d{100, 60, 25});
-  IntensityRules rules{.max_intensity = 70};
+  IntensityRules rules;
+  rules.max_intensity = 70;
   const double without = squared_error(systems, fit_intensities(systems, rules));
   rules.one_color = true;
   const IntensityFit fit = fit_intensities(systems, rules);
