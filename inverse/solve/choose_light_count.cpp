@@ -61,8 +61,7 @@ class Search {
 
   LightCountResult run() {
     if (options_.earlier.empty()) {
-      refine_cuts();
-      insert_lights();
+      begin();
       tell_count();
       if (exchange_lights()) tell_count();
     }
@@ -78,6 +77,15 @@ class Search {
     double error = std::numeric_limits<double>::infinity();
     Eigen::VectorXd held_out{};  // residuals; empty: not evaluated
   };
+
+  void begin() {
+    for (const LightEstimates& lights : options_.begun) {
+      if (!out_of_time()) consider({lights});
+    }
+    if (best_.size() > 1) return;
+    refine_cuts();
+    insert_lights();
+  }
 
   int most_lights() const { return options_.exact_lights > 0 ? options_.exact_lights : options_.max_lights; }
   // The best set of few lights is one of more that some of them left.

@@ -24,6 +24,7 @@ struct LightCountOptions {
   const HeldOut* held_out = nullptr;     // tell how many lights there are; absent: the error of the fit does
   renderer::Control control{};
   std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for
+  std::vector<LightEstimates> begun{};    // found by fewer receivers: the search goes on from them
 };
 
 struct LightCountResult {

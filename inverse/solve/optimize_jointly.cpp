@@ -203,7 +203,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
     return choose_light_count(
         response, remaining, tree,
         {options.max_lights - already, std::max(0, options.exact_lights - already), clock.seconds_left(),
-         search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options)});
+         search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options), search.begun});
   };
   LightCountResult count = find_the_rest();
   if (already > 0 && !count.out_of_time) {
@@ -227,6 +227,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.noise = last.noise;
   found.times_noise = remaining.noise > 0 ? count.error / remaining.noise : std::numeric_limits<double>::infinity();
   found.held_out = std::move(count.held_out);
+  found.sets = std::move(count.sets);
   found.out_of_time = count.out_of_time || clock.out_of_time();
   return found;
 }

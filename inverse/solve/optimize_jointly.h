@@ -29,11 +29,12 @@ struct JointSearch {
   const renderer::Control& control;
   const LightResponse& response;
   const ExactIndirect& exact;
-  const Observations& searched;  // no receiver hides the light of all others
-  const Observations& judged;    // as the objective judges them
-  const Observations& reported;  // as (3.6) judges them
-  double transport_error;        // of interpolated indirect light, relative
-  const HeldOut* held_out;       // absent where lights beside surfaces were found, and without noise
+  const Observations& searched;         // no receiver hides the light of all others
+  const Observations& judged;           // as the objective judges them
+  const Observations& reported;         // as (3.6) judges them
+  double transport_error;               // of interpolated indirect light, relative
+  const HeldOut* held_out;              // absent where lights beside surfaces were found, and without noise
+  std::vector<LightEstimates> begun{};  // sets of a search by fewer important vertices, which this one goes on from
 };
 
 // What the search has come to.
@@ -46,6 +47,7 @@ struct JointLights {
   LightEstimates start;
   std::vector<int> cut;  // of the light tree, nodes
   std::vector<LightSet> error_curve;
+  std::vector<LightEstimates> sets;  // of the others: the best found of 1, 2, … lights
 };
 
 // Those beside surfaces come first.

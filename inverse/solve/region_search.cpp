@@ -27,6 +27,9 @@ constexpr float kGrowth = 0.5F;         // of the region's longest side
 constexpr double kClearlyBetter = 0.9;  // of an error, or less
 constexpr double kMisled = 0.1;  // of the target's brightness, that lights miss where they were not fitted to it …
 constexpr double kMisledAndFar = 0.05;      // … or that those do that leave more than noise where they were
+constexpr std::size_t kMany = 9;            // lights, and more: of so many a thousand receivers see too little …
+constexpr double kLittleElse = 5;           // … where they leave so many times the noise at most …
+constexpr std::size_t kMore = 2;            // … and there may be so many more
 constexpr double kFartherElsewhere = 1.05;  // times the error where lights were fitted, or more: that misled them
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
@@ -140,6 +143,7 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
   tree = make_light_tree(response, remaining, clusters);
   optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   if (!is_joint(*basis)) return;
+  if (before != nullptr && before->basis != basis && before->has_many()) begun_ = before->sets_to_go_on_from();
   const double begun = clock.total();
   found_ = search_jointly(joint_search(), beside_surfaces_, tree, clock);
   optimal_seconds += clock.total() - begun;
@@ -183,10 +187,10 @@ void RegionSearch::share_or_hold_out(const RegionSearch* before, StageClock& clo
 }
 
 JointSearch RegionSearch::joint_search() const {
-  return {problem,        basis->options, basis->control,
-          response,       *exact_,        searched_,
-          judged,         reported,       transport.cache.indirect_relative_error,
-          held_out_.get()};
+  return {problem,         basis->options, basis->control,
+          response,        *exact_,        searched_,
+          judged,          reported,       transport.cache.indirect_relative_error,
+          held_out_.get(), begun_};
 }
 
 std::optional<Box3f> RegionSearch::wider_region() const {
@@ -234,6 +238,23 @@ bool RegionSearch::brings_closer() const {
 bool RegionSearch::was_misled() const {
   const bool close = basis->published.noise == 0 && part_left() <= kCloseEnough;
   return !found_.out_of_time && basis->options.earlier.empty() && !close && missed() > most_missed();
+}
+
+bool RegionSearch::has_many() const {
+  const SolveOptions& options = basis->options;
+  const bool free = options.earlier.empty() && options.exact_lights == 0 && found_.beside_surfaces.empty();
+  return free && !found_.out_of_time && found_.others.size() >= kMany && found_.times_noise < kLittleElse;
+}
+
+std::vector<LightEstimates> RegionSearch::sets_to_go_on_from() const {
+  std::vector<LightEstimates> sets;
+  const std::size_t count = found_.others.size();
+  for (const LightEstimates& set : found_.sets) {
+    if (set.empty() || set.size() > count + kMore) continue;
+    LightEstimates& lights = sets.emplace_back();
+    for (const LightEstimate& light : set) lights.push_back({light.position, light.intensity});
+  }
+  return sets;
 }
 
 bool RegionSearch::misses_less_than(const RegionSearch& other) const {

@@ -38,6 +38,9 @@ class RegionSearch {
   bool brings_closer() const;
   // The lights found miss a part of what receivers want that they were not fitted to.
   bool was_misled() const;
+  // So many lights were found, and little else is left, that each important vertex must tell of many: shadows' edges
+  // at few vertices then hold up descents, so that two stand for three.
+  bool has_many() const;
   // Of two searches with other important vertices.
   bool misses_less_than(const RegionSearch& other) const;
 
@@ -57,6 +60,8 @@ class RegionSearch {
 
  private:
   JointSearch joint_search() const;
+  // Of up to a few lights more than were found, without what is known of the important vertices.
+  std::vector<LightEstimates> sets_to_go_on_from() const;
   // What the lights found leave, in parts of what they were to bring.
   double part_left() const;
   // Of what held-out receivers want: with noise the part of the brightness that is missed, without it the error.
@@ -69,6 +74,7 @@ class RegionSearch {
   Observations searched_;  // no receiver hides the light of all others
   std::shared_ptr<const ExactIndirect> exact_;
   std::shared_ptr<const HeldOut> held_out_;
+  std::vector<LightEstimates> begun_;  // by a search with fewer important vertices
   LightEstimates beside_surfaces_;
   JointLights found_;
 };

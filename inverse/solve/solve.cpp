@@ -231,7 +231,7 @@ std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& b
   return best;
 }
 
-// By so many important vertices, or more where these misled it.
+// By so many important vertices, or more where these misled it, or where lights are many.
 std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOptions& options,
                                      const renderer::Control& control, StageClock& clock, SolveResult& result) {
   const std::uint64_t seed = fresh_seed(options.seed, 3);
@@ -247,13 +247,14 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
   if (!(basis->published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
   auto found = search(basis, problem, first_region(problem, options), nullptr, clock, result);
-  if (!found->was_misled() || clock.out_of_time()) return found;
+  if (!(found->was_misled() || found->has_many()) || clock.out_of_time()) return found;
 
   const std::size_t before = basis->importance.chosen.size();
   Importance more = choose_again(basis->importance, problem.target, kMoreVertices * before, seed);
   if (more.chosen.size() == before) return found;
   auto again = search(basis_of(std::move(more)), problem, found->problem.grid.region, found.get(), clock, result);
-  return again->misses_less_than(*found) ? std::move(again) : std::move(found);
+  const bool goes_on = found->has_many() && !clock.out_of_time();
+  return goes_on || again->misses_less_than(*found) ? std::move(again) : std::move(found);
 }
 
 }  // namespace

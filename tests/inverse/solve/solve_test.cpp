@@ -386,6 +386,26 @@ TEST(Solve, ALightBesideAnOpenSceneIsFoundBesideBrightOnesThatStay) {
   EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * open.diagonal());
 }
 
+// A few important vertices see too little of so many lights: three times as many do, from where the search was.
+TEST(Solve, ManyLightsAreSoughtByMoreVertices) {
+  const PaintedCorner corner(0.15F);
+  LightEstimates known;
+  for (int k = 0; k < 9; ++k) {
+    const double x = 0.7 + 1.3 * (k % 3), z = 0.7 + 1.3 * double(k / 3), y = 0.8 + 0.35 * ((2 * k) % 5);
+    known.push_back({{x, y, z}, Eigen::Array3d(3 + k % 4, 3 + (k / 2) % 4, 3 + (k / 3) % 4)});
+  }
+  const Target target = corner.target(known, -1);
+  SolveOptions options = quick();
+  options.important_vertices = 600;
+  options.verification_samples = 256;
+  const SolveResult result = solve(problem_of(corner, target, -1), options);
+  EXPECT_EQ(result.important_vertices, 1800);
+  EXPECT_EQ(result.lights.size(), known.size());
+  for (std::size_t k = 1; k < result.error_curve.size(); ++k) {
+    EXPECT_EQ(result.error_curve[k].lights.size(), k + 1) << "the curve has every number";
+  }
+}
+
 // Many lights at the border of a region close to a floor do nearly what one does far above it.
 TEST(Solve, OneLightBeyondIsBetterThanManyAtTheBorder) {
   const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
