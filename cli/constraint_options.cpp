@@ -9,7 +9,6 @@
 #include "cli/usage_error.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/blackbody.h"
-#include "renderer/core/error.h"
 
 namespace chiaro::cli {
 namespace {
@@ -99,10 +98,7 @@ void require_a_place(const renderer::Scene& scene, const inverse::LightGrid& gri
   const inverse::AllowedPlaces places(scene, grid.region, rules);
   const auto is_near_one = [&](renderer::Vec3f light) { return places.nearest(inverse::to_eigen(light)).has_value(); };
   if (std::any_of(grid.positions.begin(), grid.positions.end(), is_near_one)) return;
-  throw renderer::Error({scene.path, "solve",
-                         fmt::format("no light possible: nowhere {} is a place{}",
-                                     inverse::where_lights_may_stand(rules), inverse::so_far_from_surfaces(rules)),
-                         "a smaller distance to surfaces, or a larger region"});
+  throw inverse::no_place(scene, rules);
 }
 
 inverse::IntensityRules intensity_rules(const inverse::LightConstraints& constraints) {

@@ -1,7 +1,5 @@
 #include "inverse/solve/region_search.h"
 
-#include <fmt/format.h>
-
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/lights_beside_surfaces.h"
@@ -11,7 +9,6 @@
 #include "inverse/solve/report.h"
 #include "inverse/solve/traced_light.h"
 #include "inverse/transport/eigen_vectors.h"
-#include "renderer/core/error.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -52,13 +49,6 @@ AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid)
     if (const auto* spot = std::get_if<renderer::SpotLight>(&light)) stay.push_back(to_eigen(spot->position));
   }
   return {problem.tracer.scene(), grid.region, problem.places, std::move(stay)};
-}
-
-[[noreturn]] void no_place(const SolveProblem& problem) {
-  throw renderer::Error({problem.tracer.scene().path, "solve",
-                         fmt::format("no light possible: nowhere {} is a place{}",
-                                     where_lights_may_stand(problem.places), so_far_from_surfaces(problem.places)),
-                         "a smaller distance to surfaces, or a larger region"});
 }
 
 // Sections 3.4.2 and 3.4.3.
@@ -125,7 +115,7 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
       problem(with_region(problem_, region)),
       transport(prepare_transport(problem, basis->importance.chosen, basis->control)),
       response(problem.tracer, basis->samples, transport.cache, allowed_places(problem, transport.cache.grid)) {
-  if (response.grid_lights_near_places().empty()) no_place(problem);
+  if (response.grid_lights_near_places().empty()) throw no_place(problem.tracer.scene(), problem.places);
   cache_seconds =
       clock.finish_transport("cache", {{"lights", double(transport.cache.grid.positions.size())},
                                        {"indirect_relative_error", transport.cache.indirect_relative_error}});
@@ -143,9 +133,10 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
   tree = make_light_tree(response, remaining, clusters);
   optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
   if (!is_joint(*basis)) return;
-  if (before != nullptr && before->basis != basis && before->has_many()) begun_ = before->sets_to_go_on_from();
+  JointSearch search = joint_search();
+  if (before != nullptr && before->basis != basis && before->has_many()) search.begun = before->sets_to_go_on_from();
   const double begun = clock.total();
-  found_ = search_jointly(joint_search(), beside_surfaces_, tree, clock);
+  found_ = search_jointly(search, beside_surfaces_, tree, clock);
   optimal_seconds += clock.total() - begun;
   see_how_far_held_out_ones_are(before, clock);
 }
@@ -187,10 +178,10 @@ void RegionSearch::share_or_hold_out(const RegionSearch* before, StageClock& clo
 }
 
 JointSearch RegionSearch::joint_search() const {
-  return {problem,         basis->options, basis->control,
-          response,        *exact_,        searched_,
-          judged,          reported,       transport.cache.indirect_relative_error,
-          held_out_.get(), begun_};
+  return {problem,        basis->options, basis->control,
+          response,       *exact_,        searched_,
+          judged,         reported,       transport.cache.indirect_relative_error,
+          held_out_.get()};
 }
 
 std::optional<Box3f> RegionSearch::wider_region() const {

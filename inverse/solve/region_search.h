@@ -74,7 +74,6 @@ class RegionSearch {
   Observations searched_;  // no receiver hides the light of all others
   std::shared_ptr<const ExactIndirect> exact_;
   std::shared_ptr<const HeldOut> held_out_;
-  std::vector<LightEstimates> begun_;  // by a search with fewer important vertices
   LightEstimates beside_surfaces_;
   JointLights found_;
 };

@@ -11,7 +11,6 @@
 #include <Eigen/Geometry>
 
 #include "inverse/transport/eigen_vectors.h"
-#include "renderer/core/error.h"
 #include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
@@ -88,6 +87,13 @@ std::string where_lights_may_stand(const PlaceRules& rules) {
 
 std::string so_far_from_surfaces(const PlaceRules& rules) {
   return rules.surface_distance > 0 ? fmt::format(" {} m from all surfaces", rules.surface_distance) : "";
+}
+
+renderer::Error no_place(const renderer::Scene& scene, const PlaceRules& rules) {
+  return renderer::Error({scene.path, "solve",
+                          fmt::format("no light possible: nowhere {} is a place{}", where_lights_may_stand(rules),
+                                      so_far_from_surfaces(rules)),
+                          "a smaller distance to surfaces, or a larger region"});
 }
 
 LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules) {
