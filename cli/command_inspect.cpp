@@ -40,9 +40,9 @@ bool is_vertex_mesh(const std::string& bytes) {
   return mentions_any(bytes, {"\"generator\":\"chiaro\"", "\"COLOR_0\""}) && !is_dressed(bytes);
 }
 
-Inspection inspect(const std::string& file, const renderer::LoadOptions& load) {
+Inspection inspect(const std::string& file, const renderer::LoadOptions& load, const renderer::Control& control) {
   if (has_extension(file, {".glb", ".gltf"})) {
-    return is_vertex_mesh(renderer::read_file(file)) ? inspect_vertex_mesh(file) : inspect_scene(file, load);
+    return is_vertex_mesh(renderer::read_file(file)) ? inspect_vertex_mesh(file) : inspect_scene(file, load, control);
   }
   if (has_extension(file, {".json"})) {
     return mentions(renderer::read_file(file), "\"strokes\"") ? inspect_strokes(file) : inspect_light_file(file);
@@ -52,7 +52,8 @@ Inspection inspect(const std::string& file, const renderer::LoadOptions& load) {
 
 int run_inspect(const InspectCommand& options) {
   Session session(options.common);
-  Inspection inspection = inspect(options.file, options.load);
+  Inspection inspection = inspect(options.file, options.load, session.control());
+  session.stop_if_interrupted();
   session.warn(inspection.warnings);
   inspection.summary.emplace_back("warnings", json_list(inspection.warnings));
   session.finish(inspection.summary, aligned_rows(inspection.rows));

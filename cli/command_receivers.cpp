@@ -37,7 +37,7 @@ void print_summary(Session& session, const ReceiversCommand& options, const inve
 int run_receivers(const ReceiversCommand& options) {
   Session session(options.common);
   session.require_outputs({options.output});
-  const renderer::LoadedScene loaded = renderer::load_gltf(options.scene, options.load);
+  const renderer::LoadedScene loaded = renderer::load_gltf(options.scene, options.load, session.control());
   session.warn(loaded.warnings);
   const inverse::Receivers receivers = inverse::make_receivers(loaded.scene, {.max_edge = options.max_edge});
   session.stop_if_interrupted();

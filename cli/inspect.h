@@ -23,7 +23,8 @@ struct Inspection {
 // "kind" and "file", which every inspection starts with.
 Inspection start_inspection(const std::string& kind, const std::string& file);
 
-Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& load);
+// control: to be interrupted.
+Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& load, const renderer::Control& control);
 Inspection inspect_light_file(const std::string& file);
 Inspection inspect_strokes(const std::string& file);
 Inspection inspect_vertex_mesh(const std::string& file);  // receivers and targets

@@ -117,8 +117,8 @@ void add_lights(Inspection& inspection, const renderer::Lights& lights) {
   inspection.summary.emplace_back("lights", list);
 }
 
-Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& load) {
-  const renderer::LoadedScene loaded = renderer::load_gltf(file, load);
+Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& load, const renderer::Control& control) {
+  const renderer::LoadedScene loaded = renderer::load_gltf(file, load, control);
   Inspection inspection = start_inspection("scene", file);
   inspection.warnings = loaded.warnings;
   add_geometry(inspection, loaded.scene);

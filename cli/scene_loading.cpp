@@ -11,7 +11,7 @@ namespace chiaro::cli {
 
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session) {
-  renderer::LoadedScene loaded = renderer::load_gltf(path, load);
+  renderer::LoadedScene loaded = renderer::load_gltf(path, load, session.control());
   session.warn(loaded.warnings);
   session.stop_if_interrupted();
   if (renderer::drawn_triangle_count(loaded.scene) == 0) {

@@ -16,7 +16,7 @@ float unoccluded_illumination(const SurfaceSample& at, Vec3f light) {
   return projected > 0 ? projected / (renderer::kPi * d2 * std::sqrt(d2)) : 0;
 }
 
-// With r = x − p: I(c) n·r / (π |r|³), where c = −r·axis / |r|.
+// With r = x − p: I(v) n·r / (π |r|³), where v = 1 + r·axis / |r|.
 DirectTerm unoccluded_term(const SurfaceSample& at, const UnityLight& light) {
   const Vector3d r = light.position - to_eigen(at.on_surface()), n = to_eigen(at.normal);
   const double projected = n.dot(r);
@@ -25,10 +25,10 @@ DirectTerm unoccluded_term(const SurfaceSample& at, const UnityLight& light) {
   DirectTerm term{projected * scale, scale * (n - (3 * projected / d2) * r)};
   if (!light.cone) return term;
   const Vector3d axis = to_eigen(light.cone->axis);
-  const double cosine = -r.dot(axis) / d;
-  const Vector3d cosine_gradient = -(axis + (cosine / d) * r) / d;
-  const auto falloff = light.cone->falloff(float(cosine));
-  term.gradient = double(falloff.value) * term.gradient + double(falloff.derivative) * term.value * cosine_gradient;
+  const double versine = 0.5 * (r / d + axis).squaredNorm();
+  const Vector3d versine_gradient = (axis + ((1 - versine) / d) * r) / d;
+  const auto falloff = light.cone->falloff(float(versine));
+  term.gradient = double(falloff.value) * term.gradient + double(falloff.derivative) * term.value * versine_gradient;
   term.value *= double(falloff.value);
   return term;
 }

@@ -20,13 +20,26 @@ constexpr int kMaxDepth = 256;
   throw Error({file, place, problem, expected});
 }
 
-json parse(const std::string& text, const std::string& file) {
-  const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
+// Before it is parsed: a callback of the parser's, which could count as well, makes it look at all siblings of every
+// object.
+void check_depth(const std::string& text, const std::string& file) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') in_string = !in_string;
+    if (c == '\\' && in_string) ++i;
+    if (in_string) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
     if (depth > kMaxDepth) fail(file, "JSON", "is nested too deeply", fmt::format("at most {} levels", kMaxDepth));
-    return true;
-  };
+  }
+}
+
+json parse(const std::string& text, const std::string& file) {
+  check_depth(text, file);
   try {
-    return json::parse(text, limit_depth);
+    return json::parse(text);
   } catch (const json::parse_error& error) {
     fail(file, "JSON", fmt::format("syntax error at byte {}", error.byte), "a glTF 2.0 scene");
   } catch (const json::exception&) {

@@ -45,7 +45,7 @@ SpotLight make_spot(const GltfDocument& document, const PlacedNode& node, Vec3f 
   const float inner = float(light.spot.innerConeAngle), outer = float(light.spot.outerConeAngle);
   if (inner > outer || outer <= 0) {
     fail(document, light_place(node.light) + ".spot", fmt::format("inner angle {}, outer angle {}", inner, outer),
-         "inner less than outer");
+         "an outer angle above 0, and an inner one not above it");
   }
   return {name_of(node, light),
           node.world_from_node.column(3),

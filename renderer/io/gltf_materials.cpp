@@ -77,14 +77,14 @@ Material read_material(GltfMaterialReader& reader, const tinygltf::Material& sou
 
 }  // namespace
 
-GltfMaterials read_materials(const GltfDocument& document, std::vector<std::string>& warnings) {
+GltfMaterials read_materials(const GltfDocument& document, std::vector<std::string>& warnings, const Control& control) {
   GltfTextureList textures;
   GltfMaterials result;
   for (const tinygltf::Material& material : document.model->materials) {
     GltfMaterialReader reader{document, textures, warnings, fmt::format("materials[{}]", result.materials.size())};
     result.materials.push_back(read_material(reader, material));
   }
-  result.textures = decode_textures(document, textures);
+  result.textures = decode_textures(document, textures, control);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/control.h"
 #include "renderer/io/gltf_document.h"
 #include "renderer/scene/scene.h"
 
@@ -14,7 +15,7 @@ struct GltfMaterials {
   std::vector<Texture> textures;    // those that the materials use, decoded
 };
 
-// Error for a texture that is missing or cannot be decoded, naming it.
-GltfMaterials read_materials(const GltfDocument& document, std::vector<std::string>& warnings);
+// Error for a texture that is missing or cannot be decoded, naming it. control: to be interrupted.
+GltfMaterials read_materials(const GltfDocument& document, std::vector<std::string>& warnings, const Control& control);
 
 }  // namespace chiaro::renderer

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/core/world_limits.h"
 #include "renderer/io/gltf_accessors.h"
 #include "renderer/io/mesh_vertices.h"
 
@@ -125,8 +126,11 @@ std::size_t skin_mesh(const GltfDocument& document, const GltfPrimitiveRef& ref,
     const Mat4f transform = blend.transform(v);
     mirrored[v] = determinant3(transform) < 0;
     move_vertex(mesh, v, transform, mirrored[v]);
-    if (!is_finite(mesh.positions[v]))
-      fail(document, place_of(ref), fmt::format("its skin puts vertex {} at infinity", v));
+    const Vec3f at = mesh.positions[v];
+    if (!in_world(at)) {
+      fail(document, place_of(ref), fmt::format("its skin puts vertex {} at {:g}, {:g}, {:g}", v, at.x, at.y, at.z),
+           fmt::format("within {:g} m of the origin", kWorldLimit));
+    }
   }
   turn_mirrored(mesh.triangles, mirrored);
   return blend.mended();

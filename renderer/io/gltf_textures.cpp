@@ -1,11 +1,11 @@
 #include "renderer/io/gltf_textures.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
-#include "renderer/core/control.h"
 #include "renderer/core/error.h"
 #include "renderer/image/image_file.h"
 #include "renderer/io/gltf_uri.h"
@@ -24,6 +24,18 @@ int image_of(const tinygltf::Texture& texture) {
     if (found != texture.extensions.end()) return found->second.Get("source").GetNumberAsInt();
   }
   return texture.source;
+}
+
+// The first of images with the same bytes, of which exporters write one for every use.
+int first_alike(const GltfDocument& document, int image) {
+  const std::vector<GltfImageSource>& images = document.json.images;
+  const GltfImageSource& source = images[std::size_t(image)];
+  const auto alike = [&](const GltfImageSource& other) {
+    return source.uri ? other.uri == source.uri
+                      : source.buffer_view >= 0 && !other.uri && other.buffer_view == source.buffer_view;
+  };
+  const auto first = std::find_if(images.begin(), images.end(), alike);
+  return first == images.end() ? image : int(first - images.begin());
 }
 
 std::string label_of(const GltfDocument& document, int image) {
@@ -54,6 +66,7 @@ int GltfTextureList::add(const GltfDocument& document, int texture, const std::s
     warnings.push_back(fmt::format("{}: textures[{}] has no image that is read here; left out", place, texture));
     return -1;
   }
+  entry.image = first_alike(document, entry.image);
   if (source.sampler >= 0) {
     const tinygltf::Sampler& sampler = document.model->samplers[source.sampler];
     entry.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
@@ -66,20 +79,23 @@ int GltfTextureList::add(const GltfDocument& document, int texture, const std::s
   return int(entries_.size()) - 1;
 }
 
-std::vector<Texture> decode_textures(const GltfDocument& document, const GltfTextureList& list) {
-  std::vector<int> images;
-  for (const auto& entry : list.entries()) images.push_back(entry.image);
-  std::sort(images.begin(), images.end());
-  images.erase(std::unique(images.begin(), images.end()), images.end());
-  std::vector<Texture> decoded(images.size());
-  parallel_for(images.size(), [&](std::size_t i) { decoded[i] = decode(document, images[i]); });
-  std::vector<Texture> textures;
-  for (const auto& entry : list.entries()) {
-    const auto image = std::lower_bound(images.begin(), images.end(), entry.image) - images.begin();
-    textures.push_back(decoded[image]);
-    textures.back().nearest = entry.nearest;
-    textures.back().wrap_u = entry.wrap_u;
-    textures.back().wrap_v = entry.wrap_v;
+std::vector<Texture> decode_textures(const GltfDocument& document, const GltfTextureList& list,
+                                     const Control& control) {
+  const std::vector<GltfTextureList::Entry>& entries = list.entries();
+  std::map<int, std::vector<std::size_t>> of_image;  // entries
+  for (std::size_t k = 0; k < entries.size(); ++k) of_image[entries[k].image].push_back(k);
+  std::vector<Texture> textures(entries.size());
+  std::vector<std::size_t> first;
+  for (const auto& [image, uses] : of_image) first.push_back(uses.front());
+  parallel_for(first.size(), "textures", control.without_progress(),
+               [&](std::size_t k) { textures[first[k]] = decode(document, entries[first[k]].image); });
+  for (const auto& [image, uses] : of_image) {
+    for (std::size_t k = 1; k < uses.size(); ++k) textures[uses[k]] = textures[uses.front()];
+  }
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    textures[k].nearest = entries[k].nearest;
+    textures[k].wrap_u = entries[k].wrap_u;
+    textures[k].wrap_v = entries[k].wrap_v;
   }
   return textures;
 }

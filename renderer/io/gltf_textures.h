@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/control.h"
 #include "renderer/image/texture.h"
 #include "renderer/io/gltf_document.h"
 
@@ -28,7 +29,7 @@ class GltfTextureList {
   std::vector<Entry> entries_;
 };
 
-// On all threads. Error, naming the image, for one that is missing or cannot be decoded.
-std::vector<Texture> decode_textures(const GltfDocument& document, const GltfTextureList& list);
+// On all threads. Error, naming the image, for one that is missing or cannot be decoded. control: to be interrupted.
+std::vector<Texture> decode_textures(const GltfDocument& document, const GltfTextureList& list, const Control& control);
 
 }  // namespace chiaro::renderer

@@ -97,7 +97,7 @@ void warn_of_repairs(const NodeMeshList& meshes, std::size_t left_out, std::vect
 
 }  // namespace
 
-LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
+LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& options, const Control& control) {
   GltfDocument document = open_gltf(path, options.external);
   const int variant = find_variant(document, options.variant);
   load_buffers(document);
@@ -107,7 +107,7 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   Scene& scene = loaded.scene;
   scene.path = path.string();
 
-  GltfMaterials materials = read_materials(document, loaded.warnings);
+  GltfMaterials materials = read_materials(document, loaded.warnings, control);
   scene.materials = std::move(materials.materials);
   scene.textures = std::move(materials.textures);
 

@@ -29,10 +29,15 @@ bool Bsdf::sees(Vec3f direction, float local_z) const {
   return !geometric_horizon_ && !transmits() && local_z > 0 && dot(direction, smooth_normal_) > 0;
 }
 
+Vec3f Bsdf::light_normal() const {
+  const bool two_horizons = layers_ && layers_->clearcoat.present() && !(layers_->clearcoat.normal() == frame_.normal);
+  return transmits() || two_horizons ? Vec3f{} : frame_.normal;
+}
+
 Bsdf::Sketch Bsdf::sketch() const {
   const float color = max_component(base_color_);
   if (!base_) return {color, 0, 1};
-  if (base_->transmits()) return {};
+  if (light_normal() == Vec3f{}) return {};
   Sketch sketch = base_->sketch();
   if (layers_) {
     sketch.diffuse += layers_->sheen.albedo(1);

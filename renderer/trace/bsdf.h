@@ -17,7 +17,10 @@ class Bsdf {
  public:
   explicit Bsdf(const SurfacePoint& point);
   Vec3f normal() const { return frame_.normal; }  // shading normal
-  // How much it scatters, roughly. Of surfaces that let light through: as much from all sides.
+  // All light that it scatters comes from above its horizon; zero: there is no such normal, as light goes through, or a
+  // clearcoat has another horizon than what it covers.
+  Vec3f light_normal() const;
+  // How much it scatters, roughly. Of surfaces without such a normal: as much from all sides.
   using Sketch = BsdfSketch;
   Sketch sketch() const;
 

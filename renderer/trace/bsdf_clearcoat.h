@@ -15,6 +15,7 @@ class BsdfClearcoat {
   explicit BsdfClearcoat(const SurfacePoint& point);
 
   bool present() const { return strength_ > 0; }
+  Vec3f normal() const { return frame_.normal; }
   float cosine(Vec3f direction) const { return dot(direction, frame_.normal); }
   Vec3f eval(Vec3f to_viewer, Vec3f to_light, LightSource source) const;  // f · cosθ_i
   float pdf(Vec3f to_viewer, Vec3f to_light) const;

@@ -8,23 +8,24 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::uint32_t kNoEmitter = ~0U;
+constexpr float kNarrowestFall = 1e-6F;  // from a spot's inner cone to its outer, of the latter's versine
 
 // The full sphere, or a spot's outer cone.
 struct EmissionCone {
   Vec3f origin, axis{0, 0, 1};
   Vec3f intensity;
-  float cos_outer = -1;
+  float outer = 2;  // versine
 
-  float solid_angle() const { return 2 * kPi * (1 - cos_outer); }
+  float solid_angle() const { return 2 * kPi * outer; }
 };
 
 // solid_angle() is 0 for a light that has no position.
 EmissionCone emission_cone(const Light& light) {
-  if (const auto* point = std::get_if<PointLight>(&light)) return {point->position, {0, 0, 1}, point->intensity, -1};
+  if (const auto* point = std::get_if<PointLight>(&light)) return {point->position, {0, 0, 1}, point->intensity, 2};
   if (const auto* spot = std::get_if<SpotLight>(&light)) {
-    return {spot->position, spot->direction, spot->intensity, std::cos(spot->outer_cone_angle)};
+    return {spot->position, spot->direction, spot->intensity, versine(spot->outer_cone_angle)};
   }
-  return {{}, {0, 0, 1}, {}, 1};
+  return {{}, {0, 0, 1}, {}, 0};
 }
 
 struct PunctualVisitor {
@@ -34,7 +35,7 @@ struct PunctualVisitor {
 
   PunctualSample operator()(const SpotLight& light) const {
     PunctualSample s = arriving(light.position, light.intensity);
-    s.irradiance *= spot_cone(light).falloff(-dot(s.to_light, light.direction)).value;
+    s.irradiance *= spot_cone(light).falloff(versine(-s.to_light, light.direction)).value;
     return s;
   }
 
@@ -70,13 +71,14 @@ float mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle
 }  // namespace
 
 SpotCone spot_cone(const SpotLight& light) {
-  return {light.direction, std::cos(light.inner_cone_angle), std::cos(light.outer_cone_angle)};
+  return {light.direction, versine(light.inner_cone_angle), versine(light.outer_cone_angle)};
 }
 
-SpotCone::Falloff SpotCone::falloff(float cosine) const {
-  const float width = std::max(kNarrowestFall, cos_inner - cos_outer);
-  const float t = std::clamp((cosine - cos_outer) / width, 0.0F, 1.0F);
-  return {t * t, t > 0 && t < 1 ? 2 * t / width : 0};
+float SpotCone::fall() const { return std::max(kNarrowestFall * outer, outer - inner); }
+
+SpotCone::Falloff SpotCone::falloff(float versine) const {
+  const float t = std::clamp((outer - versine) / fall(), 0.0F, 1.0F);
+  return {t * t, t > 0 && t < 1 ? -2 * t / fall() : 0};
 }
 
 PunctualSample sample_punctual(const Light& light, Vec3f point) { return std::visit(PunctualVisitor{point}, light); }
@@ -93,9 +95,9 @@ PunctualEmission::Sample PunctualEmission::sample(float pick, Vec2f u) const {
   const double at = std::min(double(pick), 1 - 1e-9) * power_end_.back();
   const auto chosen = std::size_t(std::upper_bound(power_end_.begin(), power_end_.end(), at) - power_end_.begin());
   const EmissionCone cone = emission_cone(lights_[chosen]);
-  const float z = 1 - u.x * (1 - cone.cos_outer), sine = std::sqrt(std::max(0.0F, 1 - z * z)), phi = 2 * kPi * u.y;
-  Sample s{
-      chosen, cone.origin, Frame3f(cone.axis).world_from_local({sine * std::cos(phi), sine * std::sin(phi), z}), {}};
+  const float versine = u.x * cone.outer, sine = std::sqrt(versine * (2 - versine)), phi = 2 * kPi * u.y;
+  const Vec3f direction{sine * std::cos(phi), sine * std::sin(phi), 1 - versine};
+  Sample s{chosen, cone.origin, Frame3f(cone.axis).world_from_local(direction), {}};
   s.direction = normalize(s.direction);
   // The light's own falloff, read one metre away.
   s.intensity = sample_punctual(lights_[chosen], cone.origin + s.direction).irradiance;
@@ -105,7 +107,7 @@ PunctualEmission::Sample PunctualEmission::sample(float pick, Vec2f u) const {
 float PunctualEmission::pdf(std::size_t light, Vec3f direction) const {
   if (!(power_[light] > 0)) return 0;
   const EmissionCone cone = emission_cone(lights_[light]);
-  if (dot(direction, cone.axis) < cone.cos_outer && cone.cos_outer > -1) return 0;
+  if (versine(direction, cone.axis) > cone.outer && cone.outer < 2) return 0;
   return float(power_[light] / (power_end_.back() * double(cone.solid_angle())));
 }
 

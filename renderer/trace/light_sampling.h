@@ -1,6 +1,7 @@
 #pragma once
 // Light arriving at a point from punctual lights and from the scene's emissive triangles.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -17,17 +18,21 @@ struct PunctualSample {
   Vec3f irradiance;    // lux / cd·m⁻² per channel on a plane across to_light: intensity / distance²
 };
 
-inline constexpr float kNarrowestFall = 1e-7F;  // of cosines, from a spot's inner cone to its outer
+// 1 − cos of an angle, which narrow cones are told apart by where their cosines are all 1 in floats; of the angle
+// between two unit vectors.
+inline float versine(float angle) { return 2 * std::sin(angle / 2) * std::sin(angle / 2); }
+inline float versine(Vec3f a, Vec3f b) { return 0.5F * length_squared(a - b); }
 
-// A spot's light by the cosine of the angle from its axis: KHR_lights_punctual's recommended falloff.
+// A spot's light by the angle from its axis: KHR_lights_punctual's recommended falloff.
 struct SpotCone {
-  Vec3f axis;  // unit, from the light outwards
-  float cos_inner, cos_outer;
+  Vec3f axis;          // unit, from the light outwards
+  float inner, outer;  // versines
 
   struct Falloff {
-    float value, derivative;  // 1 within the inner cone; by the cosine
+    float value, derivative;  // 1 within the inner cone; by the versine
   };
-  Falloff falloff(float cosine) const;
+  Falloff falloff(float versine) const;
+  float fall() const;  // of versines, from the inner cone to the outer
 };
 SpotCone spot_cone(const SpotLight& light);
 

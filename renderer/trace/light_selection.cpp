@@ -91,8 +91,8 @@ template <class Response>
       const Vec3f d{l.x[k] - p.x, l.y[k] - p.y, l.z[k] - p.z};
       const float scale = 1 / std::sqrt(std::max(dot(d, d), 1e-30F));
       const float cosine = std::max(least, scale * dot(n, d));
-      const float from_axis = -scale * (l.axis_x[k] * d.x + l.axis_y[k] * d.y + l.axis_z[k] * d.z);
-      const float fall = std::min(1.0F, std::max(0.0F, (from_axis - l.cos_outer[k]) * l.fall[k]));
+      const Vec3f off_axis{scale * d.x + l.axis_x[k], scale * d.y + l.axis_y[k], scale * d.z + l.axis_z[k]};
+      const float fall = std::min(1.0F, std::max(0.0F, (l.outer[k] - 0.5F * dot(off_axis, off_axis)) * l.fall[k]));
       const float irradiance = l.intensity[k] * cosine * (scale * scale) * (fall * fall);
       out[k] = std::min(irradiance * response(scale * d, cosine), kLargest);
     }
@@ -136,13 +136,11 @@ void LightSelection::set_lane(const Light& light, std::size_t lane, LightLanes& 
   const auto* spot = std::get_if<SpotLight>(&light);
   const auto* point = std::get_if<PointLight>(&light);
   const Vec3f at = spot != nullptr ? spot->position : point->position;
-  const Vec3f axis = spot != nullptr ? spot->direction : Vec3f{};
-  const float outer = spot != nullptr ? std::cos(spot->outer_cone_angle) : -1.0F;
-  const float inner = spot != nullptr ? std::cos(spot->inner_cone_angle) : 0.0F;
+  const SpotCone cone = spot != nullptr ? spot_cone(*spot) : SpotCone{{}, 1, 2};
   lanes.x[lane] = at.x, lanes.y[lane] = at.y, lanes.z[lane] = at.z;
-  lanes.axis_x[lane] = axis.x, lanes.axis_y[lane] = axis.y, lanes.axis_z[lane] = axis.z;
-  lanes.cos_outer[lane] = outer;
-  lanes.fall[lane] = 1 / std::max(kNarrowestFall, inner - outer);
+  lanes.axis_x[lane] = cone.axis.x, lanes.axis_y[lane] = cone.axis.y, lanes.axis_z[lane] = cone.axis.z;
+  lanes.outer[lane] = cone.outer;
+  lanes.fall[lane] = 1 / cone.fall();
   lanes.intensity[lane] = max_component(spot != nullptr ? spot->intensity : point->intensity);
 }
 

@@ -18,7 +18,7 @@ struct LightLanes {
   static constexpr std::size_t kCount = 8;
   float x[kCount], y[kCount], z[kCount], intensity[kCount];
   float axis_x[kCount], axis_y[kCount], axis_z[kCount];  // zero: sends all ways
-  float cos_outer[kCount], fall[kCount];                 // of spots: 1 / (cos inner − cos outer)
+  float outer[kCount], fall[kCount];                     // of spots: versine; 1 / (outer − inner)
 };
 
 // In proportion to the irradiance that a light would give if nothing stood between: exactly that among up to some

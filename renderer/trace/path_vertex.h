@@ -52,10 +52,7 @@ struct PathTracer::Vertex {
     return transmits() ? std::abs(cosine) : cosine;
   }
   // Zero: light from all sides matters.
-  Vec3f pick_normal() const {
-    if (bsdf == nullptr) return normal;
-    return bsdf->transmits() ? Vec3f{} : bsdf->normal();
-  }
+  Vec3f pick_normal() const { return bsdf == nullptr ? normal : bsdf->light_normal(); }
   Vec3f ray_origin(Vec3f direction) const {
     return offset_point(position + stand_off, transmits_to(direction) ? -normal : normal, rounding);
   }

@@ -42,6 +42,13 @@ const BadCase kBadCases[] = {
     {"RequiredExtension", [](GltfBuilder& g) { g.root["extensionsRequired"] = {"KHR_materials_dispersion"}; },
      "KHR_materials_dispersion"},
     {"MeshOutOfRange", [](GltfBuilder& g) { g.root["nodes"][0]["mesh"] = 1; }, "nodes[0].mesh: 1 is out of range"},
+    {"NestedTooDeeply",
+     [](GltfBuilder& g) {
+       J nested = 1;
+       for (int level = 0; level < 300; ++level) nested = J::array({nested});
+       g.root["extras"] = nested;
+     },
+     "JSON: is nested too deeply (expected at most 256 levels)"},
     {"NegativeIndex", [](GltfBuilder& g) { g.root["nodes"][0]["mesh"] = -1; }, "nodes[0].mesh"},
     {"StringIndex", [](GltfBuilder& g) { g.root["nodes"][0]["mesh"] = "0"; }, "nodes[0].mesh"},
     {"NodesNotAnArray", [](GltfBuilder& g) { g.root["nodes"] = 3; }, "nodes: is of the wrong type"},

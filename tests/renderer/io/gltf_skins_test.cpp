@@ -132,6 +132,14 @@ TEST(Skins, JointsThatAreNotThereAreRefusedByPlace) {
       << message;
 }
 
+TEST(Skins, JointsOutsideTheWorldAreRefused) {
+  GltfBuilder gltf = skinned_triangle();
+  gltf.root["nodes"][1]["translation"] = {-1e30, 0, 0};
+  EXPECT_NE(error_of([&] { load(gltf); }).find("its skin puts vertex 0 at -1e+30, 0, 0 (expected within 1e+09 m"),
+            std::string::npos)
+      << error_of([&] { load(gltf); });
+}
+
 TEST(Skins, TooFewBindMatricesAreRefused) {
   GltfBuilder gltf = skinned_triangle();
   gltf.root["skins"][0]["joints"] = {1, 2, 0};

@@ -363,6 +363,38 @@ TEST(GltfMaterials, FactorsTexturesAndAlphaComeThrough) {
   EXPECT_EQ(texture.wrap_v, renderer::Wrap::kMirroredRepeat);
 }
 
+TEST(GltfMaterials, ImagesWithTheSameBytesAreOne) {
+  const TemporaryFolder folder;
+  save_image(renderer::make_image(1, 1, {"R", "G", "B"}), folder / "one.png", renderer::PixelType::kUint8);
+  save_image(renderer::make_image(2, 1, {"R", "G", "B"}), folder / "two.png", renderer::PixelType::kUint8);
+  GltfBuilder gltf = triangle_scene();
+  const ordered_json one = {{"uri", "one.png"}, {"name", "again"}}, two = {{"uri", "two.png"}};
+  gltf.root["images"] = ordered_json::array({{{"uri", "one.png"}}, two, one, one});
+  gltf.root["textures"] = ordered_json::array({{{"source", 0}}, {{"source", 1}}, {{"source", 2}}, {{"source", 3}}});
+  gltf.root["materials"] =
+      ordered_json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                            {"emissiveTexture", {{"index", 3}}},
+                            {"emissiveFactor", {1, 1, 1}}},
+                           {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}},
+                            {"emissiveTexture", {{"index", 2}}},
+                            {"emissiveFactor", {1, 1, 1}}}});
+  const LoadedScene loaded = load_gltf(folder.write("scene.glb", gltf.glb()));
+  ASSERT_EQ(loaded.scene.textures.size(), 2U);
+  for (const int width : {1, 2}) {
+    const renderer::Material& material = loaded.scene.materials.at(std::size_t(width - 1));
+    EXPECT_EQ(loaded.scene.textures[std::size_t(material.base_color_texture.texture)].width, width);
+    EXPECT_EQ(loaded.scene.textures[std::size_t(material.emission_texture.texture)].width, 1);
+  }
+}
+
+// They nest nothing.
+TEST(LoadGltf, BracketsInNamesAreOfNoDepth) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["nodes"][0]["name"] = std::string(600, '[') + "\"\\" + std::string(600, '{');
+  EXPECT_EQ(load_gltf(folder.write("scene.glb", gltf.glb())).scene.instances.size(), 1U);
+}
+
 TEST(GltfMaterials, TexturesWhoseCoordinatesAMeshHasNotAreTold) {
   const TemporaryFolder folder;
   save_image(renderer::make_image(1, 1, {"R", "G", "B"}), folder / "black.png", renderer::PixelType::kUint8);

@@ -16,6 +16,7 @@ namespace {
 using test::layered_point;
 using test::layered_points;
 using test::NamedPoint;
+using test::uniform_direction;
 
 const Vec3f kViewers[] = {{0, 0, 1}, normalize(Vec3f{1, 0, 1}), normalize(Vec3f{1, 0.3F, 0.25F})};
 
@@ -192,6 +193,26 @@ TEST(BsdfLayers, SmoothSolidsFollowFresnelAndSnell) {
       EXPECT_NEAR(reflected, double(dielectric_reflectance(viewer.z, eta)), 0.01) << front << ' ' << viewer.z;
     }
   }
+}
+
+// Whoever picks lights by their cosine with it misses none that a coat above a normal map sees.
+TEST(BsdfLayers, AllLightComesFromAboveTheHorizonOfTheLightNormal) {
+  int from_anywhere = 0;
+  for (const auto& [name, point] : layered_points({0.8F, 0.5F, 0.2F})) {
+    const Bsdf bsdf(point);
+    const Vec3f normal = bsdf.light_normal();
+    if (normal == Vec3f{}) {
+      from_anywhere += bsdf.transmits() ? 0 : 1;
+      continue;
+    }
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+      Sampler sampler(5, 0, i);
+      const Vec3f to_light = uniform_direction(sampler.next_2d());
+      const bool lit = max_component(bsdf.eval(kViewers[0], to_light)) > 0;
+      EXPECT_FALSE(lit && dot(normal, to_light) < -1e-4F) << name;
+    }
+  }
+  EXPECT_GT(from_anywhere, 0);
 }
 
 TEST(BsdfLayers, AreReciprocal) {

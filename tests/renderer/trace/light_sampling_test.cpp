@@ -225,5 +225,19 @@ TEST(SamplePunctual, NarrowSpotsAreFullOnTheirAxis) {
   }
 }
 
+// Their cosines are all 1 in floats.
+TEST(SamplePunctual, NarrowSpotsFallOffAsWideOnesDo) {
+  for (const double outer : {1.0, 0.1, 1e-2, 1e-3, 1e-4}) {
+    const Light spot = SpotLight{"", {0, 0, 0}, {0, 0, -1}, {4, 4, 4}, 0, float(outer)};
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const double angle = part * outer, z = 1000;
+      const auto versine = [](double a) { return 2 * std::pow(std::sin(a / 2), 2); };
+      const double expected = 4e-6 * std::pow(std::cos(angle) * (1 - versine(angle) / versine(outer)), 2);
+      const Vec3f at{float(z * std::tan(angle)), 0, float(-z)};
+      EXPECT_NEAR(sample_punctual(spot, at).irradiance.x, expected, 2e-3 * expected) << outer << ' ' << part;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::renderer
