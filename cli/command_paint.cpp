@@ -121,7 +121,7 @@ int run_paint(const PaintCommand& options) {
   const std::optional<PictureCamera> camera = choose_picture_camera(options.picture, *stage.scene, session);
   const inverse::Target base = make_base(options, stage, strokes, session);
   const inverse::PaintResult result =
-      inverse::paint(base, strokes, {.unpainted_weight = unpainted_weight(options, strokes)});
+      inverse::paint(base, strokes, {.unpainted_weight = unpainted_weight(options, strokes)}, session.control());
   session.stop_if_interrupted();
   warn_of_idle_options(options, strokes, session);
   warn_of_misses(options, result, session);

@@ -208,9 +208,8 @@ int run_run(RunCommand options) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
     problem.cache_file = options.folder() / "cache.exr";
   }
-  inverse::SolveResult result =
+  const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
-  name_apart(problem, result);
   if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   save_found_lights(options.scene, result, options.folder() / kLightsFile,
                     output_scene_options(stage, options.choices));

@@ -90,8 +90,7 @@ int run_solve(SolveCommand options) {
     solving.earlier = inverse::load_error_curve(options.from);
     solving.earlier_file = options.from;
   }
-  inverse::SolveResult result = inverse::solve(problem, solving, session.control());
-  name_apart(problem, result);
+  const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   session.stop_if_interrupted();
   if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   save_found_lights(options.scene, result, options.output, output_scene_options(stage, options.choices));

@@ -1,7 +1,6 @@
 #include "cli/solve_options.h"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -83,14 +82,6 @@ renderer::Lights lights_in_place(const LoadedStage& stage, const SolveChoices& c
                          "lights in the scene, or no --keep-positions"});
 }
 
-std::set<std::string> names_in_use(const inverse::SolveProblem& problem) {
-  std::set<std::string> names;
-  for (const renderer::Light& light : problem.kept_lights) names.insert(renderer::name_of(light));
-  for (const renderer::Instance& instance : problem.tracer.scene().instances) names.insert(instance.name);
-  for (const renderer::Camera& camera : problem.tracer.scene().cameras) names.insert(camera.name);
-  return names;
-}
-
 }  // namespace
 
 void settle_constraints(SolveChoices& choices) {
@@ -139,16 +130,6 @@ void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices,
   if (own == 0 || choices.constraints.keep_lights || choices.constraints.keep_positions) return;
   session.warn(
       fmt::format("{}: its own lights ({}) are taken out; --keep-lights leaves them lit", stage.scene->path, own));
-}
-
-void name_apart(const inverse::SolveProblem& problem, inverse::SolveResult& result) {
-  if (!problem.lights_in_place.empty()) return;
-  std::set<std::string> used = names_in_use(problem);
-  int number = 1;
-  for (inverse::FoundLight& found : result.lights) {
-    while (!used.insert(fmt::format("light{}", number)).second) ++number;
-    std::visit([&](auto& light) { light.name = fmt::format("light{}", number); }, found.light);
-  }
 }
 
 renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const SolveChoices& choices) {

@@ -36,10 +36,6 @@ inverse::SolveOptions solve_options(const SolveChoices& choices, const CommonOpt
 // Passes on what a user should know of the result before believing it.
 void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices, Session& session);
 
-// Lights found are called light1, light2 … in their order, past the names that the scene's surfaces, its cameras and
-// the lights that stay lit have. Lights that keep their positions keep their names.
-void name_apart(const inverse::SolveProblem& problem, inverse::SolveResult& result);
-
 // How the scene with the lights found is made of the scene.
 renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const SolveChoices& choices);
 

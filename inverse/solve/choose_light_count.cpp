@@ -46,6 +46,7 @@ constexpr std::size_t kCrowd = 12;             // lights or more: some are excha
 constexpr std::size_t kMostExchanged = 4;
 constexpr double kSurelyNoise = 1.25;  // … unless they leave so many times the noise, or less …
 constexpr double kClearlyLess = 0.99;  // … again and again, while that makes the error so much less
+constexpr std::size_t kGoesBack = 2;   // lights less than a search that goes on began with
 constexpr int kShakes = 8;             // further descents of a set that is to be refused …
 constexpr float kShaken = 0.03F;       // … from as far away at most, of the region's diagonal
 
@@ -79,13 +80,19 @@ class Search {
   };
 
   void begin() {
-    for (const LightEstimates& lights : options_.begun) {
-      if (!out_of_time()) consider({lights});
+    for (const LightEstimates& lights : options_.begun.sets) {
+      if (lights.size() < least_sought()) {
+        keep_as_it_is(lights);
+      } else if (!out_of_time()) {
+        consider({lights});
+      }
     }
     if (best_.size() > 1) return;
     refine_cuts();
     insert_lights();
   }
+
+  std::size_t least_sought() const { return std::max(options_.begun.lights, kGoesBack + 1) - kGoesBack; }
 
   int most_lights() const { return options_.exact_lights > 0 ? options_.exact_lights : options_.max_lights; }
   // The best set of few lights is one of more that some of them left.
@@ -130,6 +137,12 @@ class Search {
     if (worth_it.empty()) return;
     corrections_->correct(worth_it);
     for (JointRefinement& set : refine_all(worth_it, how)) keep(std::move(set));
+  }
+
+  void keep_as_it_is(LightEstimates lights) {
+    const std::vector<Column> columns = evaluate_columns(response_, lights, Evaluation::kTracedVisibility);
+    const double error = refit_intensities(observations_, columns, lights);
+    keep({std::move(lights), error, 0, {}});
   }
 
   void keep(JointRefinement refined) {
@@ -229,7 +242,7 @@ class Search {
 
   // From the largest set down: without each light in turn, intensities refitted, the best of them refined.
   void eliminate_lights() {
-    for (std::size_t size = best_.size() - 1; size > 1 && !out_of_time(); --size) {
+    for (std::size_t size = best_.size() - 1; size > least_sought() && !out_of_time(); --size) {
       if (!best_[size].lights.empty()) consider(parents(best_[size].lights, 1));
     }
   }

@@ -15,6 +15,12 @@ namespace chiaro::inverse {
 
 inline constexpr double kKnee = 1.25;  // further lights must lower an error that is not noise by this factor
 
+// What a search by fewer receivers has come to.
+struct BegunSearch {
+  std::vector<LightEstimates> sets;
+  std::size_t lights = 0;  // of the set that it chose
+};
+
 struct LightCountOptions {
   int max_lights = 32;
   int exact_lights = 0;  // 0: chosen here; fewer where all of them would not shine
@@ -24,7 +30,7 @@ struct LightCountOptions {
   const HeldOut* held_out = nullptr;     // tell how many lights there are; absent: the error of the fit does
   renderer::Control control{};
   std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for
-  std::vector<LightEstimates> begun{};    // found by fewer receivers: the search goes on from them
+  BegunSearch begun{};                    // the search goes on from there
 };
 
 struct LightCountResult {
@@ -37,7 +43,8 @@ struct LightCountResult {
 };
 
 // Every cut of the light tree is refined jointly; then lights are inserted where the residual asks for them, and taken
-// away one by one, as long as that gains anything (backward elimination).
+// away one by one, as long as that gains anything (backward elimination). A search that goes on takes sets of far fewer
+// lights than were chosen as they are, but for their intensities.
 LightCountResult choose_light_count(const LightResponse& response, const Observations& observations,
                                     const LightTree& tree, const LightCountOptions& options);
 

@@ -130,7 +130,9 @@ class RuledColors {
       cost = now;
       fit_colors();
     }
-    fit_strengths();
+    const numerics::BoundedLeastSquares last = fit_strengths();
+    result.kkt_residual = last.kkt_residual;
+    result.iterations += last.iterations;
     result.directions = directions();
     result.intensity = rows_of(intensity());
     return result;
@@ -182,7 +184,7 @@ class RuledColors {
     for (Index j = 1; j < count_; ++j) color_.row(j) = color_.row(0), mired_[j] = mired_[0];
   }
 
-  void fit_strengths() {
+  numerics::BoundedLeastSquares fit_strengths() {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count_, count_);
     VectorXd atb = VectorXd::Zero(count_);
     for (int c = 0; c < 3; ++c) {
@@ -190,7 +192,9 @@ class RuledColors {
       gram += k * channels_[std::size_t(c)].gram * k;
       atb += k * channels_[std::size_t(c)].atb;
     }
-    strength_ = numerics::bounded_least_squares(gram, atb, VectorXd::Constant(count_, upper_)).x;
+    numerics::BoundedLeastSquares fit = numerics::bounded_least_squares(gram, atb, VectorXd::Constant(count_, upper_));
+    strength_ = fit.x;
+    return fit;
   }
 
   void fit_colors() {

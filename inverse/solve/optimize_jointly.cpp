@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "inverse/solve/choose_light_count.h"
 #include "inverse/solve/error_curve.h"
@@ -24,6 +25,7 @@ constexpr std::size_t kAlwaysLed = 8;   // … of as many lights, and of more wh
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 constexpr double kSignificant = 10;     // times what noise alone makes of a light: transport errs, too
+constexpr std::size_t kMore = 2;        // lights that few important vertices may have hidden
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
   some.insert(some.end(), others.begin(), others.end());
@@ -40,6 +42,17 @@ LightEstimates kept_to_rules(const LightResponse& response, const Observations& 
   for (std::size_t j = 0; j < lights.size(); ++j) lights[j].position = positions[j];
   refit_intensities(ruled, evaluate_columns(response, lights, Evaluation::kTracedVisibility), lights);
   return lights;
+}
+
+// Without what is known of its important vertices.
+BegunSearch begun_with(const JointLights& found) {
+  BegunSearch begun{{}, found.others.size()};
+  for (const LightEstimates& set : found.sets) {
+    if (set.empty() || set.size() > begun.lights + kMore) continue;
+    LightEstimates& lights = begun.sets.emplace_back();
+    for (const LightEstimate& light : set) lights.push_back({light.position, light.intensity});
+  }
+  return begun;
 }
 
 // beside_surfaces: in all of them.
@@ -144,6 +157,19 @@ LightEstimates refitted_over_many(const JointSearch& search, LightEstimates ligh
   return lights;
 }
 
+// The lights of a cut, and its nodes. remaining: without rules.
+std::tuple<LightEstimates, std::vector<int>> cut_tree(const JointSearch& search, const LightEstimates& beside_surfaces,
+                                                      Observations remaining, const LightTree& tree,
+                                                      StageClock& clock) {
+  const SolveOptions& options = search.options;
+  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
+                               options.max_lights - int(beside_surfaces.size())};
+  const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
+  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
+  remaining.rules = search.problem.intensities;
+  return {joined(beside_surfaces, kept_to_rules(search.response, remaining, cut.lights)), cut.nodes};
+}
+
 // Further lights make the error clearly less, though not as much less as they would have to.
 bool another_explains_more(const std::vector<LightSet>& curve, std::size_t count) {
   double least = std::numeric_limits<double>::infinity(), at_count = least;
@@ -186,30 +212,29 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
                            StageClock& clock) {
   const SolveOptions& options = search.options;
   const LightResponse& response = search.response;
-  const int already = int(beside_surfaces.size());
+  const auto already = [&] { return int(beside_surfaces.size()); };
   Observations remaining = less(search.searched, response, beside_surfaces);
   remaining.rules = {};
-  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
-                               options.max_lights - already};
-  const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
-  clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
+  const bool goes_on = search.begun != nullptr;
   JointLights found;
+  std::tie(found.start, found.cut) = goes_on ? std::tuple(search.begun->start, search.begun->cut)
+                                             : cut_tree(search, beside_surfaces, remaining, tree, clock);
   remaining.rules = search.problem.intensities;
-  found.start = joined(beside_surfaces, kept_to_rules(response, remaining, cut.lights));
-  found.cut = cut.nodes;
 
   const auto find_the_rest = [&] {
-    if (already >= most_lights(options)) return LightCountResult{};
+    if (already() >= most_lights(options)) return LightCountResult{};
     return choose_light_count(
         response, remaining, tree,
-        {options.max_lights - already, std::max(0, options.exact_lights - already), clock.seconds_left(),
-         search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options), search.begun});
+        {options.max_lights - already(), std::max(0, options.exact_lights - already()), clock.seconds_left(),
+         search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options),
+         goes_on ? begun_with(*search.begun) : BegunSearch{}});
   };
   LightCountResult count = find_the_rest();
-  if (already > 0 && !count.out_of_time) {
+  if (already() > 0 && !count.out_of_time) {
     // What was found first was found beside the light of all others.
     beside_surfaces =
         refine_lights_beside_surfaces(response, search.exact, search.judged, beside_surfaces, count.lights);
+    std::erase_if(beside_surfaces, is_dark);
     remaining = less(search.searched, response, beside_surfaces);
     count = find_the_rest();
   }

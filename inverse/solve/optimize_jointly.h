@@ -22,21 +22,6 @@ struct Optimum {
   std::size_t held = 0;  // … but for so many of the first
 };
 
-// What is known before the search.
-struct JointSearch {
-  const SolveProblem& problem;
-  const SolveOptions& options;
-  const renderer::Control& control;
-  const LightResponse& response;
-  const ExactIndirect& exact;
-  const Observations& searched;         // no receiver hides the light of all others
-  const Observations& judged;           // as the objective judges them
-  const Observations& reported;         // as (3.6) judges them
-  double transport_error;               // of interpolated indirect light, relative
-  const HeldOut* held_out;              // absent where lights beside surfaces were found, and without noise
-  std::vector<LightEstimates> begun{};  // sets of a search by fewer important vertices, which this one goes on from
-};
-
 // What the search has come to.
 struct JointLights {
   LightEstimates beside_surfaces, others;
@@ -48,6 +33,21 @@ struct JointLights {
   std::vector<int> cut;  // of the light tree, nodes
   std::vector<LightSet> error_curve;
   std::vector<LightEstimates> sets;  // of the others: the best found of 1, 2, … lights
+};
+
+// What is known before the search.
+struct JointSearch {
+  const SolveProblem& problem;
+  const SolveOptions& options;
+  const renderer::Control& control;
+  const LightResponse& response;
+  const ExactIndirect& exact;
+  const Observations& searched;        // no receiver hides the light of all others
+  const Observations& judged;          // as the objective judges them
+  const Observations& reported;        // as (3.6) judges them
+  double transport_error;              // of interpolated indirect light, relative
+  const HeldOut* held_out;             // absent where lights beside surfaces were found, and without noise
+  const JointLights* begun = nullptr;  // by fewer important vertices: this search goes on from them
 };
 
 // Those beside surfaces come first.

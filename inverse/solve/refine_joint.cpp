@@ -15,13 +15,40 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr double kAtLimit = 1 - 1e-6;  // of the greatest intensity, or more: it is kept
+constexpr double kFaintest = 1e-6;     // of the target's norm: a light that is damped like any other
 constexpr double kRounding = 1e-14;    // of the largest eigenvalue, or less: none
+
+// What Ceres is told of metres and of cd/m²: its tolerances are absolute. Positions are in parts of the region's
+// diagonal, from its centre; residuals in parts of the target's norm.
+struct Units {
+  Eigen::Vector3d center;
+  double diagonal, norm;
+
+  Units(const LightResponse& response, const Observations& observations)
+      : center(to_eigen(response.grid().region.center())),
+        diagonal(std::max(double(response.grid().region.diagonal()), std::numeric_limits<double>::min())),
+        norm(observations.target_norm > 0 ? observations.target_norm : 1) {}
+
+  std::vector<Eigen::Vector3d> positions(const double* parameters, std::size_t lights) const {
+    std::vector<Eigen::Vector3d> positions;
+    for (std::size_t j = 0; j < lights; ++j) {
+      positions.emplace_back(center + diagonal * Eigen::Map<const Eigen::Vector3d>(parameters + 3 * j));
+    }
+    return positions;
+  }
+  void set_parameters(const std::vector<Eigen::Vector3d>& positions, double* parameters) const {
+    for (std::size_t j = 0; j < positions.size(); ++j) {
+      Eigen::Map<Eigen::Vector3d>(parameters + 3 * j) = (positions[j] - center) / diagonal;
+    }
+  }
+};
 
 // What a step needs to know of the residuals r and their derivatives J.
 struct NormalEquations {
@@ -38,13 +65,11 @@ class LightsAtPlaces {
 
   // Ceres asks for the derivatives where it has asked for the residuals alone before, wherever a step led downwards:
   // they come with the rays that were traced for the latter.
-  void move_to(const double* positions) {
-    const std::vector<double> at(positions, positions + 3 * start_.size());
-    if (at == at_) return;
+  void move_to(const std::vector<Eigen::Vector3d>& positions) {
+    if (positions == at_) return;
     columns_.resize(start_.size());
     renderer::parallel_for(columns_.size(), [&](std::size_t j) {
-      const Eigen::Vector3d position(at.data() + 3 * j);
-      columns_[j] = response_.evaluate_with_gradient(position, Evaluation::kTracedVisibility);
+      columns_[j] = response_.evaluate_with_gradient(positions[j], Evaluation::kTracedVisibility);
       if (start_[j].correction.size() > 0) columns_[j].value += start_[j].correction;
     });
     std::vector<Column> values;
@@ -52,7 +77,7 @@ class LightsAtPlaces {
     fit_ = fit_intensities(observations_, values);
     residual_ = total_illumination(values, fit_.intensity, receivers()) - observations_.wanted;
     residual_.array().colwise() *= observations_.sqrt_weight.array();
-    at_ = at;
+    at_ = positions;
   }
 
   const std::vector<Eigen::Array3d>& intensities() const { return fit_.intensity; }
@@ -131,7 +156,7 @@ class LightsAtPlaces {
   const Observations& observations_;
   const LightEstimates& start_;  // for the corrections
   // Where the lights were last, and what they do there.
-  std::vector<double> at_;
+  std::vector<Eigen::Vector3d> at_;
   std::vector<ColumnWithGradient> columns_;
   IntensityFit fit_;
   Column residual_;  // weighted
@@ -140,23 +165,26 @@ class LightsAtPlaces {
 // As Ceres sees it: as many residuals as unknowns and one more, with the same cost, gradient and JᵀJ as those of all
 // receivers, so that its steps are the same and none of its products as long as the receivers are many. With
 // JᵀJ = V D Vᵀ they are D^½ Vᵀ in the unknowns, D^−½ Vᵀ Jᵀr in value, and what is left of ‖r‖. One parameter block: x,
-// y, z (metres) of each light.
+// y, z of each light.
 class CondensedResiduals final : public ceres::CostFunction {
  public:
-  explicit CondensedResiduals(LightsAtPlaces& lights, int unknowns) : lights_(lights) {
+  CondensedResiduals(LightsAtPlaces& lights, const Units& units, int unknowns) : lights_(lights), units_(units) {
     set_num_residuals(unknowns + 1);
     mutable_parameter_block_sizes()->push_back(unknowns);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    lights_.move_to(parameters[0]);
-    const double norm = lights_.residual_norm();
     const int unknowns = num_residuals() - 1;
+    lights_.move_to(units_.positions(parameters[0], std::size_t(unknowns / 3)));
+    const double norm = lights_.residual_norm() / units_.norm;
     Eigen::Map<Eigen::VectorXd> out(residuals, unknowns + 1);
     out.setZero();
     out[unknowns] = norm;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    const NormalEquations normal = lights_.normal_equations();
+    NormalEquations normal = lights_.normal_equations();
+    const double per_unit = units_.diagonal / units_.norm;
+    normal.squared_jacobian *= per_unit * per_unit;
+    normal.gradient *= per_unit / units_.norm;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal.squared_jacobian);
     const Eigen::VectorXd along = eigen.eigenvectors().transpose() * normal.gradient;
     Eigen::Map<Jacobian> jacobian(jacobians[0], unknowns + 1, unknowns);
@@ -176,27 +204,27 @@ class CondensedResiduals final : public ceres::CostFunction {
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   LightsAtPlaces& lights_;
+  const Units& units_;
 };
-
-std::vector<Eigen::Vector3d> positions_of(const double* x, int size) {
-  std::vector<Eigen::Vector3d> positions;
-  for (int k = 0; k < size; k += 3) positions.emplace_back(x + k);
-  return positions;
-}
 
 // Steps that lead where lights may not stand end at the nearest place where they may, or where they began.
 class AllowedPositions final : public ceres::Manifold {
  public:
-  AllowedPositions(const AllowedPlaces& places, std::size_t lights) : places_(places), size_(int(3 * lights)) {}
+  AllowedPositions(const AllowedPlaces& places, const Units& units, std::size_t lights)
+      : places_(places), units_(units), size_(int(3 * lights)) {}
 
   int AmbientSize() const override { return size_; }
   int TangentSize() const override { return size_; }
   bool Plus(const double* x, const double* delta, double* result) const override {
     Eigen::Map<Eigen::VectorXd> sum(result, size_);
     sum = Eigen::Map<const Eigen::VectorXd>(x, size_) + Eigen::Map<const Eigen::VectorXd>(delta, size_);
-    std::vector<Eigen::Vector3d> positions = positions_of(result, size_);
-    if (!places_.settle(positions)) positions = positions_of(x, size_);
-    for (std::size_t j = 0; j < positions.size(); ++j) sum.segment<3>(Eigen::Index(3 * j)) = positions[j];
+    const std::vector<Eigen::Vector3d> wanted = units_.positions(result, std::size_t(size_ / 3));
+    std::vector<Eigen::Vector3d> positions = wanted;
+    if (!places_.settle(positions)) {
+      sum = Eigen::Map<const Eigen::VectorXd>(x, size_);
+    } else if (positions != wanted) {
+      units_.set_parameters(positions, result);
+    }
     return true;
   }
   bool PlusJacobian(const double*, double* jacobian) const override { return identity(jacobian); }
@@ -214,6 +242,7 @@ class AllowedPositions final : public ceres::Manifold {
   }
 
   const AllowedPlaces& places_;
+  const Units& units_;
   int size_;
 };
 
@@ -223,6 +252,7 @@ ceres::Solver::Options solver_options(const JointRefinementOptions& options) {
   o.max_num_iterations = options.max_iterations;
   o.function_tolerance = options.function_tolerance;
   o.gradient_tolerance = 1e-12;
+  o.min_lm_diagonal = kFaintest * kFaintest;
   // From the first step on short enough that most lead downwards.
   o.initial_trust_region_radius = 10;
   o.parameter_tolerance = 1e-7;
@@ -257,20 +287,26 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
     return result;
   }
   result.lights = start;
+  const Units units(response, observations);
+  std::vector<double> parameters(3 * start.size());
+  units.set_parameters(positions, parameters.data());
   ceres::Problem problem;
-  double* const parameters = positions.front().data();
-  problem.AddParameterBlock(parameters, int(3 * start.size()), new AllowedPositions(response.places(), start.size()));
+  problem.AddParameterBlock(parameters.data(), int(parameters.size()),
+                            new AllowedPositions(response.places(), units, start.size()));
   LightsAtPlaces lights(response, observations, start);
-  problem.AddResidualBlock(new CondensedResiduals(lights, int(3 * start.size())), nullptr, parameters);
+  problem.AddResidualBlock(new CondensedResiduals(lights, units, int(parameters.size())), nullptr, parameters.data());
   [[maybe_unused]] static const bool silent = silence_ceres();
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  lights.move_to(parameters);
+  const std::vector<Eigen::Vector3d> reached = units.positions(parameters.data(), start.size());
+  positions = reached;
+  if (!response.places().settle(positions)) positions = reached;
+  lights.move_to(positions);
   for (std::size_t j = 0; j < start.size(); ++j) {
     result.lights[j].position = positions[j];
     result.lights[j].intensity = lights.intensities()[j];
   }
-  result.error = std::sqrt(2 * summary.final_cost) / observations.target_norm;
+  result.error = lights.residual_norm() / observations.target_norm;
   result.iterations = int(summary.iterations.size());
   result.termination = ceres::TerminationTypeToString(summary.termination_type);
   return result;

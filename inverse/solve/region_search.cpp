@@ -25,8 +25,7 @@ constexpr double kClearlyBetter = 0.9;  // of an error, or less
 constexpr double kMisled = 0.1;  // of the target's brightness, that lights miss where they were not fitted to it …
 constexpr double kMisledAndFar = 0.05;      // … or that those do that leave more than noise where they were
 constexpr std::size_t kMany = 9;            // lights, and more: of so many a thousand receivers see too little …
-constexpr double kLittleElse = 5;           // … where they leave so many times the noise at most …
-constexpr std::size_t kMore = 2;            // … and there may be so many more
+constexpr double kLittleElse = 5;           // … where they leave so many times the noise at most
 constexpr double kFartherElsewhere = 1.05;  // times the error where lights were fitted, or more: that misled them
 
 std::shared_ptr<const HeldOut> hold_out(const SearchBasis& basis, const SolveProblem& problem, BakeSettings settings) {
@@ -123,8 +122,25 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
   judged = is_joint(*basis) ? weighted_by_objective(reported, basis->options.objective) : basis->published;
   judged.rules = problem.intensities;
   searched_ = basis->published;
-  if (is_joint(*basis)) look_beside_surfaces(before, clock);
+  const bool goes_on = before != nullptr && before->basis != basis && before->has_many();
+  if (is_joint(*basis)) look_beside_surfaces(before, goes_on, clock);
+  if (goes_on) {
+    distribution = before->distribution;
+    clusters = before->clusters;
+    tree = before->tree;
+  } else {
+    look_where_light_comes_from(clock);
+  }
+  if (!is_joint(*basis)) return;
+  JointSearch search = joint_search();
+  if (goes_on) search.begun = &before->found_;
+  const double begun = clock.total();
+  found_ = search_jointly(search, beside_surfaces_, tree, clock);
+  optimal_seconds += clock.total() - begun;
+  see_how_far_held_out_ones_are(before, clock);
+}
 
+void RegionSearch::look_where_light_comes_from(StageClock& clock) {
   const Observations remaining = less(searched_, response, beside_surfaces_);
   distribution = estimate_light_distribution(response, remaining, basis->options.weak_light);
   initial_seconds += clock.finish("nnls", distribution_figures(distribution));
@@ -132,23 +148,16 @@ RegionSearch::RegionSearch(std::shared_ptr<const SearchBasis> basis_, const Solv
   initial_seconds += clock.finish("watershed", {{"clusters", double(clusters.size())}});
   tree = make_light_tree(response, remaining, clusters);
   optimal_seconds += clock.finish("light_tree", {{"leaves", double(clusters.size())}});
-  if (!is_joint(*basis)) return;
-  JointSearch search = joint_search();
-  if (before != nullptr && before->basis != basis && before->has_many()) search.begun = before->sets_to_go_on_from();
-  const double begun = clock.total();
-  found_ = search_jointly(search, beside_surfaces_, tree, clock);
-  optimal_seconds += clock.total() - begun;
-  see_how_far_held_out_ones_are(before, clock);
 }
 
-void RegionSearch::look_beside_surfaces(const RegionSearch* before, StageClock& clock) {
+void RegionSearch::look_beside_surfaces(const RegionSearch* before, bool goes_on, StageClock& clock) {
   const TransportCache& cache = transport.cache;
   const bool same_vertices = before != nullptr && before->basis == basis;
   exact_ = same_vertices
                ? before->exact_
                : std::make_shared<const ExactIndirect>(problem.tracer, basis->samples, cache.settings, basis->control);
   clock.finish_transport("exact_indirect", {});
-  if (basis->options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
+  if (!goes_on && basis->options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
     beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis->options));
   }
   searched_ = basis->published.noise > 0
@@ -235,17 +244,6 @@ bool RegionSearch::has_many() const {
   const SolveOptions& options = basis->options;
   const bool free = options.earlier.empty() && options.exact_lights == 0 && found_.beside_surfaces.empty();
   return free && !found_.out_of_time && found_.others.size() >= kMany && found_.times_noise < kLittleElse;
-}
-
-std::vector<LightEstimates> RegionSearch::sets_to_go_on_from() const {
-  std::vector<LightEstimates> sets;
-  const std::size_t count = found_.others.size();
-  for (const LightEstimates& set : found_.sets) {
-    if (set.empty() || set.size() > count + kMore) continue;
-    LightEstimates& lights = sets.emplace_back();
-    for (const LightEstimate& light : set) lights.push_back({light.position, light.intensity});
-  }
-  return sets;
 }
 
 bool RegionSearch::misses_less_than(const RegionSearch& other) const {

@@ -39,7 +39,7 @@ class RegionSearch {
   // The lights found miss a part of what receivers want that they were not fitted to.
   bool was_misled() const;
   // So many lights were found, and little else is left, that each important vertex must tell of many: shadows' edges
-  // at few vertices then hold up descents, so that two stand for three.
+  // at few vertices then hold up descents, so that two stand for three. A search by more of them goes on from here.
   bool has_many() const;
   // Of two searches with other important vertices.
   bool misses_less_than(const RegionSearch& other) const;
@@ -59,9 +59,8 @@ class RegionSearch {
   double initial_seconds = 0, optimal_seconds = 0, cache_seconds = 0;
 
  private:
+  void look_where_light_comes_from(StageClock& clock);
   JointSearch joint_search() const;
-  // Of up to a few lights more than were found, without what is known of the important vertices.
-  std::vector<LightEstimates> sets_to_go_on_from() const;
   // What the lights found leave, in parts of what they were to bring.
   double part_left() const;
   // Of what held-out receivers want: with noise the part of the brightness that is missed, without it the error.
@@ -69,7 +68,8 @@ class RegionSearch {
   double most_missed() const;
   void see_how_far_held_out_ones_are(const RegionSearch* before, StageClock& clock);
   void share_or_hold_out(const RegionSearch* before, StageClock& clock);
-  void look_beside_surfaces(const RegionSearch* before, StageClock& clock);
+  // goes_on: there were none.
+  void look_beside_surfaces(const RegionSearch* before, bool goes_on, StageClock& clock);
 
   Observations searched_;  // no receiver hides the light of all others
   std::shared_ptr<const ExactIndirect> exact_;

@@ -285,8 +285,8 @@ class Settler {
       const bool rests = hidden || at_rest(bench, free, on_the_way_.near);
       if (!rests) {
         earlier = std::exchange(before, lights);
+        if (options_.exact_lights > 0) light_the_dark(free.now);
         lights = joined(on_the_way_, lights, free);
-        if (options_.exact_lights > 0) light_the_dark(lights);
         come_to_rest(on_the_way_.some.response().places(), earlier, before, lights);
       }
       finish("approach", lights.size(), rests);
@@ -335,9 +335,8 @@ class Settler {
   // As many as asked for, or those that matter.
   LightIntervals only_needed(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free) const {
     if (options_.exact_lights == 0) return remove_needless(bench, carry_along, free);
-    LightIntervals intervals = bench.intervals(free.indirect, free.now);
     let_the_dark_share(free);
-    return intervals;
+    return bench.intervals(free.indirect, free.now);
   }
 
   const SolveProblem& problem_;

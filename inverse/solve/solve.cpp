@@ -14,6 +14,7 @@
 #include "inverse/solve/enough_lights.h"
 #include "inverse/solve/error_curve.h"
 #include "inverse/solve/fit_in_place.h"
+#include "inverse/solve/free_light_names.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/region_search.h"
@@ -93,11 +94,12 @@ void report_lights(const SolveProblem& problem, const SolveOptions& options, con
   std::vector<std::size_t> order = all_indices(lights.size());
   if (options.exact_lights == 0) std::erase_if(order, [&](std::size_t j) { return is_dark(lights[j]); });
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
+  const std::vector<std::string> names = free_light_names(problem, order.size());
   std::vector<int> number(lights.size());
   for (const std::size_t j : order) {
     renderer::PointLight light = point_light(lights[j]);
+    light.name = names[result.lights.size()];
     number[j] = int(result.lights.size()) + 1;
-    light.name = fmt::format("light{}", number[j]);
     result.lights.push_back({light, norm[j] / total, to_vec3f(intervals.lights[j].position),
                              to_vec3f(intervals.lights[j].intensity.matrix())});
   }

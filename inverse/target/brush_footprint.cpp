@@ -69,19 +69,20 @@ SurfacePath lay_with_mirror_image(const ReceiverSurface& surface, const Stroke& 
   return path;
 }
 
-std::vector<PathDistance> distances(const ReceiverSurface& surface, const SurfacePath& path, const Stroke& stroke) {
+std::vector<PathDistance> distances(const ReceiverSurface& surface, const SurfacePath& path, const Stroke& stroke,
+                                    const renderer::Control& control) {
   const bool along_surface = stroke.distance == BrushDistance::kSurface && !surface.receivers.triangles.empty();
-  return along_surface ? distances_along_surface(surface, path, stroke.radius)
-                       : distances_through_space(surface, path, stroke.radius);
+  return along_surface ? distances_along_surface(surface, path, stroke.radius, control)
+                       : distances_through_space(surface, path, stroke.radius, control);
 }
 
 }  // namespace
 
-BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke) {
+BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke, const renderer::Control& control) {
   const SurfacePath path = lay_with_mirror_image(surface, stroke);
   std::vector<Sides> sides(path.pieces.size());
   BrushFootprint footprint{{}, path.far_points};
-  for (const PathDistance& near : distances(surface, path, stroke)) {
+  for (const PathDistance& near : distances(surface, path, stroke, control)) {
     Sides& side = sides[near.piece];
     if (stroke.facing && side.empty()) side = sides_around(surface, path, near.piece, stroke.radius);
     const float faced = stroke.facing ? facing(surface.receivers.normals[near.receiver], side) : 1;

@@ -23,6 +23,8 @@ struct BrushFootprint {
 // measured along the fronts of the receivers' triangles, those that their normals point from, or through space; without
 // triangles always through space. With `facing`, those only whose normal turns to the side that the nearest place of
 // the path lies on, fading where surfaces turn away. A place on the edge between two surfaces lies on both.
-BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke);
+// control: to be interrupted.
+BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke,
+                               const renderer::Control& control = {});
 
 }  // namespace chiaro::inverse

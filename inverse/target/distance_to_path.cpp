@@ -12,6 +12,7 @@
 #include "inverse/numerics/surface_contact.h"
 #include "inverse/numerics/two_sided_surface.h"
 #include "inverse/transport/eigen_vectors.h"
+#include "renderer/core/error.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -50,9 +51,15 @@ void sort_unique(std::vector<std::uint32_t>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-std::vector<std::uint32_t> triangles_near(const ReceiverSurface& surface, const SurfacePath& path, double radius) {
+void check_interruption(const renderer::Control& control) {
+  if (control.stop_requested()) throw renderer::Interruption();
+}
+
+std::vector<std::uint32_t> triangles_near(const ReceiverSurface& surface, const SurfacePath& path, double radius,
+                                          const renderer::Control& control) {
   std::vector<std::uint32_t> near;
   for (const Piece& piece : path.pieces) {
+    check_interruption(control);
     visit_near_piece(surface, piece, radius, [&](std::uint32_t item, const Vector3d& center, double around) {
       if (closest_on_surface(surface, item, center).distance <= around) near.push_back(item);
     });
@@ -199,8 +206,9 @@ double scale_of(const ReceiverSurface& surface, double radius) {
   return surface.tree.nodes.empty() ? 0 : std::min(radius, double(surface.tree.nodes.front().box.diagonal()));
 }
 
-LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePath& path, double radius, double scale) {
-  LocalSurface local{make_neighbourhood(surface, triangles_near(surface, path, radius)), {}, {}, {}};
+LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePath& path, double radius, double scale,
+                                const renderer::Control& control) {
+  LocalSurface local{make_neighbourhood(surface, triangles_near(surface, path, radius, control)), {}, {}, {}};
   double largest = 0;
   for (const Vector3d& p : local.near.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   const double same_point = std::max(kSamePoint * scale, kRounding * largest);
@@ -216,10 +224,12 @@ LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePat
 
 // Points before segments: of two as near, the first counts, and a point in a corner lies on both surfaces there.
 std::vector<numerics::GeodesicSource> make_sources(const ReceiverSurface& surface, const LocalSurface& local,
-                                                   const SurfacePath& path, double scale) {
+                                                   const SurfacePath& path, double scale,
+                                                   const renderer::Control& control) {
   std::vector<numerics::GeodesicSource> points, segments;
   std::vector<std::uint32_t> items;
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
+    check_interruption(control);
     const double tolerance = kOnFace * scale;
     const Piece& piece = path.pieces[i];
     items.clear();
@@ -266,10 +276,10 @@ std::vector<numerics::GeodesicDistance> front_distances(const LocalSurface& loca
 }  // namespace
 
 std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface, const SurfacePath& path,
-                                                  double radius) {
+                                                  double radius, const renderer::Control& control) {
   const double scale = scale_of(surface, radius);
-  const LocalSurface local = make_local_surface(surface, path, radius, scale);
-  const auto sources = make_sources(surface, local, path, scale);
+  const LocalSurface local = make_local_surface(surface, path, radius, scale, control);
+  const auto sources = make_sources(surface, local, path, scale, control);
   const auto found = front_distances(local, numerics::geodesic_distance(local.sides.surface, sources, radius));
   std::vector<PathDistance> distances;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -279,9 +289,10 @@ std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface
 }
 
 std::vector<PathDistance> distances_through_space(const ReceiverSurface& surface, const SurfacePath& path,
-                                                  double radius) {
+                                                  double radius, const renderer::Control& control) {
   std::vector<PathDistance> all;
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
+    check_interruption(control);
     const Piece& piece = path.pieces[i];
     std::vector<std::uint32_t> receivers;
     visit_near_piece(surface, piece, radius, [&](std::uint32_t item, const Vector3d&, double) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "inverse/target/surface_path.h"
+#include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 
@@ -16,12 +17,12 @@ struct PathDistance {
 
 // Along the surface, on the fronts of triangles: on the side that their corners' normals point to. Surfaces that meet
 // within 1/200 of the radius, or of all receivers' extent where that is less, are one: what stands on a floor ends it,
-// and the way goes on up there. Ascending.
+// and the way goes on up there. Ascending. control: to be interrupted.
 std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface, const SurfacePath& path,
-                                                  double radius);
+                                                  double radius, const renderer::Control& control);
 
-// Straight through space. Ascending.
+// Straight through space. Ascending. control: to be interrupted.
 std::vector<PathDistance> distances_through_space(const ReceiverSurface& surface, const SurfacePath& path,
-                                                  double radius);
+                                                  double radius, const renderer::Control& control);
 
 }  // namespace chiaro::inverse

@@ -75,7 +75,8 @@ void check_options(const PaintOptions& options) {
 
 }  // namespace
 
-PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options) {
+PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options,
+                  const renderer::Control& control) {
   check_options(options);
   CHIARO_CHECK(base.illumination.size() == base.receivers.size());
   PaintResult result{base, {}, {}};
@@ -84,7 +85,7 @@ PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions
   const ReceiverSurface surface = make_receiver_surface(base.receivers);
   for (const Stroke& stroke : strokes.strokes) {
     CHIARO_CHECK(stroke.radius > 0 && !stroke.path.empty());
-    BrushFootprint footprint = brush_footprint(surface, stroke);
+    BrushFootprint footprint = brush_footprint(surface, stroke, control);
     for (const TouchedReceiver& touched : footprint.touched) apply_to_receiver(result.target, stroke, touched);
     result.touched.push_back(footprint.touched.size());
     result.far_points.push_back(std::move(footprint.far_points));

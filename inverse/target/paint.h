@@ -55,7 +55,9 @@ struct PaintResult {
 };
 
 // Applies the strokes in order to `base`: its illumination is what they change, and unpainted_weight, or else its own
-// weights, what they bring nearer to theirs. Values are held between 0 and renderer::kBrightest.
-PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options);
+// weights, what they bring nearer to theirs. Values are held between 0 and renderer::kBrightest. control: to be
+// interrupted.
+PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions& options,
+                  const renderer::Control& control = {});
 
 }  // namespace chiaro::inverse

@@ -23,7 +23,8 @@ using renderer::Vec3f;
 constexpr int kRounds = 40;
 constexpr double kFarther = 1e-5;           // in parts of a distance: what is pushed away ends clearly beyond it
 constexpr double kHanging = 1e-3;           // in parts of the clearance, or …
-constexpr double kHangingAt = 1e-4;         // … metres: it is kept
+constexpr double kHangingAt = 1e-4;         // … metres, or …
+constexpr double kHangingPart = 1e-5;       // … of the scene's diagonal, where that is less: it is kept
 constexpr double kDefaultClearance = 0.01;  // of the scene's diagonal
 constexpr double kInFront = 0.5;            // cosine between a surface's normal and the way to a light, at least
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
@@ -44,8 +45,6 @@ double farther(double distance, const Vector3d& position) {
   return distance * (1 + kFarther) + double(std::numeric_limits<float>::epsilon()) * position.cwiseAbs().maxCoeff();
 }
 
-double tolerance(double clearance) { return std::max(kHanging * clearance, kHangingAt); }
-
 // Unit; any where there is none.
 Vector3d direction(const Vector3d& from, const Vector3d& to, const Vector3d& otherwise) {
   const double length = (to - from).norm();
@@ -58,6 +57,11 @@ double clearance_of(const Mount& mount, const renderer::Scene& scene) {
            fmt::format("at most {:g} m", renderer::kWorldLimit));
   }
   return mount.clearance ? *mount.clearance : kDefaultClearance * double(surface_bounds(scene).diagonal());
+}
+
+double tolerance_of(double clearance, const renderer::Scene& scene) {
+  const double rounding = std::min(kHangingAt, kHangingPart * double(surface_bounds(scene).diagonal()));
+  return std::max(kHanging * clearance, rounding);
 }
 
 [[noreturn]] void too_near(const Mount& mount, const renderer::Scene& scene, double surface_distance) {
@@ -123,7 +127,8 @@ AllowedPlaces::AllowedPlaces(const renderer::Scene& scene, const Box3f& region, 
     check_node(mount, scene);
     const double clearance = clearance_of(mount, scene);
     if (clearance < rules.surface_distance) continue;
-    mounts_.push_back(std::make_shared<MountedSurface>(MountedSurface{NearestSurface(scene, mount.node), clearance}));
+    mounts_.push_back(std::make_shared<MountedSurface>(
+        MountedSurface{NearestSurface(scene, mount.node), clearance, tolerance_of(clearance, scene)}));
   }
   const bool anywhere = rules.boxes.empty() && rules.mounts.empty();
   if (anywhere) boxes_.push_back(region);
@@ -152,7 +157,7 @@ bool AllowedPlaces::is_in_front(const MountedSurface& mount, const NearestPoint&
   const Vector3d way = position - near.point;
   const double along = way.dot(near.normal);
   const double beside = (way - along * near.normal).norm();
-  if (near.on_open_edge && beside > tolerance(mount.clearance)) return false;
+  if (near.on_open_edge && beside > mount.tolerance) return false;
   return (near.double_sided ? std::abs(along) : along) >= kInFront * near.distance;
 }
 
@@ -168,7 +173,7 @@ Vector3d AllowedPlaces::in_front_of(const MountedSurface& mount, const Vector3d&
 
 bool AllowedPlaces::hangs_on(const MountedSurface& mount, const Vector3d& position) const {
   const NearestPoint near = *mount.surface.find(position, kAnywhere);
-  return is_in_front(mount, near, position) && std::abs(near.distance - mount.clearance) <= tolerance(mount.clearance);
+  return is_in_front(mount, near, position) && std::abs(near.distance - mount.clearance) <= mount.tolerance;
 }
 
 bool AllowedPlaces::contains(const Vector3d& position) const {

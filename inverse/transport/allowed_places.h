@@ -63,7 +63,7 @@ class AllowedPlaces {
  private:
   struct MountedSurface {
     NearestSurface surface;
-    double clearance = 0;
+    double clearance = 0, tolerance = 0;  // metres
   };
   static bool is_in_front(const MountedSurface& mount, const NearestPoint& near, const Eigen::Vector3d& position);
   Eigen::Vector3d in_front_of(const MountedSurface& mount, const Eigen::Vector3d& position) const;

@@ -8,6 +8,7 @@
 #include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/gather_cells.h"
 #include "inverse/transport/nearest_gather_point.h"
+#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
 
@@ -254,9 +255,11 @@ std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const Gat
 }
 
 std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& tracer, const GatherOperator& gather,
-                                                               std::span<const Vec3f> lights) {
+                                                               std::span<const Vec3f> lights,
+                                                               const renderer::Control& control) {
   std::vector<std::vector<Vec3f>> all;
   while (!lights.empty()) {
+    if (control.stop_requested()) throw renderer::Interruption();
     const auto some = lights.first(lights_at_once(lights.size()));
     if (some.size() == 1) {
       append_indirect<OneLight>(tracer, gather, some, all);

@@ -74,10 +74,11 @@ std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer,
                                               std::span<const renderer::Vec3f> lights);
 
 // The same of any number of lights, by light and receiver, with what the lights' own rays find of the spots close to
-// them (bright_spot.h).
+// them (bright_spot.h). control: to be interrupted.
 std::vector<std::vector<renderer::Vec3f>> indirect_illumination_by_light(const renderer::RayTracer& tracer,
                                                                          const GatherOperator& gather,
-                                                                         std::span<const renderer::Vec3f> lights);
+                                                                         std::span<const renderer::Vec3f> lights,
+                                                                         const renderer::Control& control = {});
 
 // Indirect illumination of all receivers under one unity light of any kind, for a shadow ray per gather point and
 // little else.

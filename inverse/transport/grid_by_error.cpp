@@ -35,14 +35,17 @@ constexpr std::uint64_t kTestSeed = 101;  // apart from those of other positions
 // Holds grids against positions between their lights. The same operator gives both, so that its noise does not count.
 class InterpolationTest {
  public:
-  InterpolationTest(const RayTracer& tracer, const Receivers& receivers, const BakeSettings& settings)
+  // control: to be interrupted.
+  InterpolationTest(const RayTracer& tracer, const Receivers& receivers, const BakeSettings& settings,
+                    const renderer::Control& control)
       : tracer_(tracer),
         samples_(select_receivers(receivers, evenly_spread(receivers.size(), kReceivers)).samples),
         gather_(make_gather_operator(tracer, samples_,
                                      {.samples = settings.samples,
                                       .points_per_sample = kPointsPerSample,
                                       .bounces = settings.bounces,
-                                      .seed = settings.seed})) {}
+                                      .seed = settings.seed})),
+        control_(control.without_progress()) {}
 
   // What a cache has of one light.
   struct Row {
@@ -54,10 +57,10 @@ class InterpolationTest {
     std::vector<Row> rows(lights.size(),
                           {std::vector<std::uint8_t>(samples_.size()), std::vector<Vec3f>(samples_.size())});
     if (!gather_.points.empty()) {
-      auto indirect = indirect_illumination_by_light(tracer_, gather_, lights);
+      auto indirect = indirect_illumination_by_light(tracer_, gather_, lights, control_);
       for (std::size_t l = 0; l < lights.size(); ++l) rows[l].indirect = std::move(indirect[l]);
     }
-    renderer::parallel_for(lights.size(), [&](std::size_t l) {
+    renderer::parallel_for(lights.size(), "grid", control_, [&](std::size_t l) {
       for (std::size_t i = 0; i < samples_.size(); ++i) {
         rows[l].visibility[i] = sees(tracer_, samples_[i], lights[l], std::uint32_t(i)) ? 1 : 0;
       }
@@ -111,6 +114,7 @@ class InterpolationTest {
   const RayTracer& tracer_;
   std::vector<renderer::SurfaceSample> samples_;
   GatherOperator gather_;
+  renderer::Control control_;
 };
 
 using Row = InterpolationTest::Row;
@@ -266,7 +270,7 @@ class Refinement {
 LightGrid choose_light_grid(const RayTracer& tracer, const Receivers& receivers, const LightGridOptions& options,
                             const BakeSettings& settings, const renderer::Control& control) {
   if (!(options.error > 0)) return make_light_grid(tracer, options);
-  const InterpolationTest test(tracer, receivers, settings);
+  const InterpolationTest test(tracer, receivers, settings, control);
   LightGrid grid = regular_grid(tracer, test, options, settings, control);
   return Refinement(tracer, test, std::move(grid), kLocalError * options.error, settings).run(control);
 }

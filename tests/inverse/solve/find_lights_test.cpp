@@ -162,6 +162,28 @@ TEST(RefineJoint, NeverGetsWorseAndStaysInBounds) {
   }
 }
 
+// Tolerances of the descent are in nobody's units.
+TEST(RefineJoint, DescendsAsFarUnderDimLightAsUnderBright) {
+  LightEstimates known = known_lights(2);
+  std::vector<JointRefinement> refined;
+  for (const double brightness : {1.0, 1e-9, 1e9}) {
+    LightEstimates lights = known;
+    for (LightEstimate& light : lights) light.intensity *= brightness;
+    const DirectProblem problem(lights);
+    LightEstimates start = lights;
+    start[0].position += Vector3d(0.08, -0.06, 0.05);
+    start[1].position += Vector3d(-0.05, 0.07, 0.06);
+    refined.push_back(refine_joint(problem.response(), problem.observations(), start));
+  }
+  for (const JointRefinement& one : refined) {
+    EXPECT_EQ(one.iterations, refined[0].iterations);
+    EXPECT_NEAR(one.error, refined[0].error, 1e-3 * refined[0].error);
+    for (std::size_t j = 0; j < known.size(); ++j) {
+      EXPECT_LT((one.lights[j].position - refined[0].lights[j].position).norm(), 1e-4) << j;
+    }
+  }
+}
+
 TEST(RefineJoint, OfNoLightsIsTheErrorOfDarkness) {
   const DirectProblem problem(known_lights(1));
   EXPECT_NEAR(refine_joint(problem.response(), problem.observations(), {}).error, 1, 1e-12);
