@@ -69,6 +69,7 @@ class Search {
     for (const LightEstimates& lights : options_.earlier) {
       if (best_.size() < 2 || !out_of_time()) consider({lights});
     }
+    come_closest_with_fewer();
     return result();
   }
 
@@ -105,9 +106,14 @@ class Search {
 
   std::vector<JointRefinement> refine_all(const std::vector<LightEstimates>& starts,
                                           const JointRefinementOptions& how) {
+    return refine_all(observations_, starts, how);
+  }
+
+  std::vector<JointRefinement> refine_all(const Observations& observations, const std::vector<LightEstimates>& starts,
+                                          const JointRefinementOptions& how) {
     std::vector<JointRefinement> refined(starts.size());
     renderer::parallel_for(starts.size(),
-                           [&](std::size_t k) { refined[k] = refine_joint(response_, observations_, starts[k], how); });
+                           [&](std::size_t k) { refined[k] = refine_joint(response_, observations, starts[k], how); });
     refinements_ += int(starts.size());
     return refined;
   }
@@ -243,7 +249,7 @@ class Search {
   // From the largest set down: without each light in turn, intensities refitted, the best of them refined.
   void eliminate_lights() {
     for (std::size_t size = best_.size() - 1; size > least_sought() && !out_of_time(); --size) {
-      if (!best_[size].lights.empty()) consider(parents(best_[size].lights, 1));
+      if (!best_[size].lights.empty()) consider(parents(observations_, best_[size].lights, 1));
     }
   }
 
@@ -260,7 +266,7 @@ class Search {
     for (std::size_t size = knee(); size < best_size() && !out_of_time(); ++size) shake(size);
     for (std::size_t size = best_size(); size > 1 && !out_of_time(); --size) {
       consider({best_[size].lights}, kToTheEnd);
-      std::vector<LightEstimates> smaller = parents(best_[size].lights, kMostParents);
+      std::vector<LightEstimates> smaller = parents(observations_, best_[size].lights, kMostParents);
       if (!best_[size - 1].lights.empty()) smaller.push_back(best_[size - 1].lights);
       consider(smaller);
       if (best_[size - 1].error < kKnee * best_[size].error) consider({best_[size - 1].lights}, kToTheEnd);
@@ -290,7 +296,7 @@ class Search {
       if (size < kCrowd || size >= best_.size() || best_[size].lights.empty()) break;
       const double error = best_[size].error;
       if (error <= kSurelyNoise * observations_.noise) break;
-      for (const LightEstimates& others : parents(best_[size].lights, kMostExchanged)) {
+      for (const LightEstimates& others : parents(observations_, best_[size].lights, kMostExchanged)) {
         if (!out_of_time()) consider_one_more(others);
       }
       if (int(size) < most_searched()) consider_one_more(best_[size].lights);
@@ -317,20 +323,46 @@ class Search {
     consider(starts, kToTheEnd);
   }
 
+  // From as many lights as the target takes down, each set by what the objective leaves of the one before.
+  void come_closest_with_fewer() {
+    if (options_.judged == nullptr || best_.size() < 2) return;
+    closest_.resize(best_.size());
+    for (std::size_t size = best_size() - 1; size >= least_sought() && !out_of_time(); --size) {
+      const LightEstimates& larger = closest(size + 1).lights;
+      const bool is_all_there_may_be = int(size) == most_lights();
+      std::vector<LightEstimates> starts =
+          parents(*options_.judged, larger, is_all_there_may_be ? kMostParents : std::size_t{1});
+      if (!best_[size].lights.empty()) starts.push_back(best_[size].lights);
+      for (JointRefinement& set : refine_all(*options_.judged, starts, kSearching)) {
+        const bool all_shine = std::none_of(set.lights.begin(), set.lights.end(), is_dark);
+        if (!set.lights.empty() && all_shine && set.error < closest_[size].error) {
+          closest_[size] = {std::move(set.lights), set.error, {}};
+        }
+      }
+    }
+  }
+
+  Candidate& closest(std::size_t size) {
+    const bool known = size < closest_.size() && !closest_[size].lights.empty();
+    return known ? closest_[size] : best_[size];
+  }
+
   // Without one light each; those of the least errors.
-  std::vector<LightEstimates> parents(const LightEstimates& all, std::size_t most) const {
+  std::vector<LightEstimates> parents(const Observations& observations, const LightEstimates& all,
+                                      std::size_t most) const {
     const std::vector<Column> columns = evaluate_columns(response_, all, Evaluation::kTracedVisibility);
     std::vector<Candidate> candidates;
     for (std::size_t without = 0; without < all.size(); ++without) {
-      candidates.push_back(refitted_without(all, columns, without));
+      candidates.push_back(refitted_without(observations, all, columns, without));
     }
     return best_sets(std::move(candidates), most);
   }
 
-  Candidate refitted_without(LightEstimates lights, std::vector<Column> columns, std::size_t without) const {
+  static Candidate refitted_without(const Observations& observations, LightEstimates lights,
+                                    std::vector<Column> columns, std::size_t without) {
     lights.erase(lights.begin() + std::ptrdiff_t(without));
     columns.erase(columns.begin() + std::ptrdiff_t(without));
-    const double error = refit_intensities(observations_, columns, lights);
+    const double error = refit_intensities(observations, columns, lights);
     return {std::move(lights), error};
   }
 
@@ -341,11 +373,11 @@ class Search {
     size = options_.exact_lights > 0 ? most : std::min(size, most);
     while (size > 0 && best_[size].lights.empty()) --size;
     if (size > 0) {
-      r.lights = best_[size].lights;
-      r.error = best_[size].error;
-      if (held_out_) r.held_out = held_out_residuals(best_[size]);
+      r.lights = closest(size).lights;
+      r.error = relative_error(observations_, illumination_of(response_, r.lights));
+      if (held_out_) r.held_out = held_out_residuals(closest(size));
     }
-    for (std::size_t n = 1; n <= most; ++n) r.sets.push_back(best_[n].lights);
+    for (std::size_t n = 1; n <= most; ++n) r.sets.push_back(closest(n).lights);
     r.refinements = refinements_;
     r.out_of_time = out_of_time_;
     return r;
@@ -356,7 +388,8 @@ class Search {
   const LightTree& tree_;
   LightCountOptions options_;
   Clock::time_point start_;
-  std::vector<Candidate> best_{1};  // by number of lights
+  std::vector<Candidate> best_{1};    // by number of lights
+  std::vector<Candidate> closest_{};  // of fewer lights than the target takes; their errors are the objective's
   std::optional<KnownCorrections> corrections_;
   std::optional<HeldOutSets> held_out_;
   bool cuts_are_enough_ = false;  // larger ones than the best explain no more

@@ -31,6 +31,9 @@ struct LightCountOptions {
   renderer::Control control{};
   std::vector<LightEstimates> earlier{};  // known already: they are refined, and no others are looked for
   BegunSearch begun{};                    // the search goes on from there
+  // The same, as the objective weighs them: sets of fewer lights than the target takes are those that come closest by
+  // it. Absent: by the weights of the search, which may give up what is brightest.
+  const Observations* judged = nullptr;
 };
 
 struct LightCountResult {

@@ -227,7 +227,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
         response, remaining, tree,
         {options.max_lights - already(), std::max(0, options.exact_lights - already()), clock.seconds_left(),
          search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options),
-         goes_on ? begun_with(*search.begun) : BegunSearch{}});
+         goes_on ? begun_with(*search.begun) : BegunSearch{}, already() > 0 ? nullptr : &search.judged});
   };
   LightCountResult count = find_the_rest();
   if (already() > 0 && !count.out_of_time) {

@@ -345,6 +345,28 @@ TEST(ChooseLightCount, GivesAsManyAsAskedAndNoMoreThanAllowed) {
   EXPECT_TRUE(choose_light_count(problem.response(), problem.observations(), tree, options).out_of_time);
 }
 
+// Capped weights give up the pool of a lamp beside the wall, which is most of the light.
+TEST(ChooseLightCount, OneOfManyIsThatWhichTheObjectiveAsksFor) {
+  LightEstimates known = known_lights(3);
+  known[0] = {{0.3, 2.0, 1.0}, {9, 7, 5}};
+  const DirectProblem problem(known, 500);
+  const Observations& judged = problem.observations();
+  double least = std::numeric_limits<double>::infinity();
+  for (const LightEstimate& one : known) {
+    least = std::min(least, refine_joint(problem.response(), judged, {one}).error);
+  }
+  const auto error_by = [&](const Observations* objective) {
+    LightCountOptions options;
+    options.exact_lights = 1;
+    options.judged = objective;
+    const LightEstimates one =
+        choose_light_count(problem.response(), with_capped_weights(judged), tree_of(problem), options).lights;
+    return relative_error(judged, illumination_of(problem.response(), one));
+  };
+  EXPECT_LT(error_by(&judged), 1.02 * least);
+  EXPECT_GT(error_by(nullptr), 1.1 * least);
+}
+
 LightEstimates random_lights_of_the_corner(std::size_t count, std::uint32_t seed) {
   LightEstimates lights;
   for (std::uint32_t j = 0; j < count; ++j) {
