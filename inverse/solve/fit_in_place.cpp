@@ -1,6 +1,7 @@
 #include "inverse/solve/fit_in_place.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -25,6 +26,7 @@ constexpr int kLeastSamples = 64;          // paths per receiver
 constexpr double kComparedPaths = 2e6;     // of all receivers, where intensities are to be told roughly …
 constexpr int kLeastComparedSamples = 16;  // … and per receiver, from this to the least number otherwise
 constexpr int kFewerAgain = 4;             // times as few, the second time
+constexpr double kLeastOutside = 0.01;     // of what a receiver leaves, as far as the others decide it
 
 renderer::Light with_intensity(renderer::Light light, Vec3f intensity) {
   intensity_of(light) = intensity;
@@ -58,11 +60,20 @@ TracedColumns trace_columns(const SolveProblem& problem, const renderer::Lights&
   return {traced(paths, 6), traced(paths / kFewerAgain, 8)};
 }
 
+struct ChannelErrors {
+  Eigen::MatrixXd covariance;  // lights × lights
+  Eigen::VectorXd freedom;     // degrees of freedom that each light's variance is known by
+};
+
+// Half of an interval that holds 90 %, by Student's distribution, in standard deviations.
+double half_width(double freedom) { return kNinety + (std::pow(kNinety, 3) + kNinety) / (4 * freedom); }
+
 // Of one channel's intensities, by what the fit leaves at each receiver (sandwich estimate), as light_intervals(). The
 // columns' noise, which makes lights look unlike each other that are not, is not that of the same columns traced again:
-// these are the instruments.
-Eigen::MatrixXd covariance_of_channel(const Observations& observations, const TracedColumns& traced,
-                                      const Column& residual, int channel) {
+// these are the instruments. The few receivers beside a lamp may have nearly all to say of it; so many degrees of
+// freedom does their noise leave: Satterthwaite, An Approximate Distribution of Estimates of Variance Components, 1946.
+ChannelErrors errors_of_channel(const Observations& observations, const TracedColumns& traced, const Column& residual,
+                                int channel) {
   const auto weighted = [&](const std::vector<Column>& columns) {
     Eigen::MatrixXd a(residual.rows(), Eigen::Index(columns.size()));
     for (std::size_t j = 0; j < columns.size(); ++j) {
@@ -70,15 +81,20 @@ Eigen::MatrixXd covariance_of_channel(const Observations& observations, const Tr
     }
     return a;
   };
-  const Eigen::MatrixXd instruments = weighted(traced.again);
-  const Eigen::MatrixXd inverse =
-      (instruments.transpose() * weighted(traced.columns)).completeOrthogonalDecomposition().pseudoInverse();
-  const Eigen::MatrixXd pull = observations.sqrt_weight.cwiseProduct(residual.col(channel)).asDiagonal() * instruments;
-  Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse.transpose();
-  for (Eigen::Index j = 0; j < covariance.rows(); ++j) {
-    if (!(instruments.col(j).squaredNorm() > 0)) covariance(j, j) = std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd instruments = weighted(traced.again), columns = weighted(traced.columns);
+  const Eigen::MatrixXd inverse = (instruments.transpose() * columns).completeOrthogonalDecomposition().pseudoInverse();
+  // What each receiver would leave if it were left out of the fit, which the few beside a lamp lead to themselves.
+  const Eigen::VectorXd leverage = (columns * inverse).cwiseProduct(instruments).rowwise().sum();
+  const Eigen::VectorXd left = observations.sqrt_weight.cwiseProduct(residual.col(channel))
+                                   .cwiseQuotient((1 - leverage.array()).max(kLeastOutside).matrix());
+  const Eigen::MatrixXd pull = left.asDiagonal() * instruments * inverse.transpose();
+  ChannelErrors errors{pull.transpose() * pull, {}};
+  const Eigen::ArrayXd fourth = pull.array().square().square().colwise().sum();
+  errors.freedom = (3 * errors.covariance.diagonal().array().square() / fourth.max(1e-300)).max(1);
+  for (Eigen::Index j = 0; j < pull.cols(); ++j) {
+    if (!(instruments.col(j).squaredNorm() > 0)) errors.covariance(j, j) = std::numeric_limits<double>::infinity();
   }
-  return covariance;
+  return errors;
 }
 
 // Half widths of intensities; of positions, which stay, none. Infinite where a light brings nothing.
@@ -89,10 +105,11 @@ LightIntervals intervals_of(const Observations& observations, const TracedColumn
   LightIntervals intervals{std::vector<LightInterval>(intensity.size(), {Eigen::Vector3d::Zero(), {}}), {}};
   std::set<std::pair<std::size_t, std::size_t>> confounded;
   for (int c = 0; c < 3; ++c) {
-    const Eigen::MatrixXd covariance = covariance_of_channel(observations, traced, residual, c);
+    const auto [covariance, freedom] = errors_of_channel(observations, traced, residual, c);
     const Eigen::VectorXd variance = covariance.diagonal();
     for (std::size_t j = 0; j < intensity.size(); ++j) {
-      intervals.lights[j].intensity[c] = kNinety * std::sqrt(variance[Eigen::Index(j)]);
+      const double half = half_width(freedom[Eigen::Index(j)]);
+      intervals.lights[j].intensity[c] = half * std::sqrt(variance[Eigen::Index(j)]);
       for (std::size_t k = j + 1; k < intensity.size(); ++k) {
         const auto a = Eigen::Index(j), b = Eigen::Index(k);
         const double dimmer = std::min(intensity[j][c], intensity[k][c]);

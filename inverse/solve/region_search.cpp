@@ -204,10 +204,11 @@ std::optional<Box3f> RegionSearch::wider_region() const {
     if (norm > kMatters * norm_of_wanted(judged)) lights.push_back(found_.others[j].position);
   }
   const Growth growth = grown_at(transport.cache.grid.region, lights);
-  const bool close = is_explained(found_) || part_left() < kCloseEnough;
-  if (growth.lights_at_border < (close ? kCrowd : 1)) return std::nullopt;
+  if (growth.lights_at_border < (comes_close() ? kCrowd : 1)) return std::nullopt;
   return growth.region;
 }
+
+bool RegionSearch::comes_close() const { return is_explained(found_) || part_left() < kCloseEnough; }
 
 bool RegionSearch::is_clearly_better_than(const RegionSearch& other) const {
   if (!found_.beside_surfaces.empty()) return false;

@@ -31,6 +31,8 @@ class RegionSearch {
   // Where a larger region may hold better lights: those found press against its border, and do not explain the target
   // or take a crowd of them to.
   std::optional<Box3f> wider_region() const;
+  // Nothing but noise is left, or little of what is wanted.
+  bool comes_close() const;
   // Of two searches, the one that came closer, or as close with fewer lights.
   bool is_clearly_better_than(const RegionSearch& other) const;
 

@@ -31,6 +31,7 @@ namespace {
 using renderer::Error;
 
 constexpr int kMostRegions = 4;                 // one larger than the other
+constexpr float kHardlySeen = 1.0F / 16;        // of a region's longest side
 constexpr std::size_t kMoreVertices = 3;        // times as many, where they misled the search
 constexpr double kOnSurface = 0.5;              // of a target's receivers must lie on the scene
 constexpr std::size_t kReceiversPerLight = 40;  // at least, for a trace to tell where lights are and to judge them
@@ -182,9 +183,23 @@ bool region_may_grow(const SolveProblem& problem) {
   return load_transport_cache_header(*problem.cache_file).grid.region == default_region(problem.tracer);
 }
 
+// Of what is painted, where a grid of the whole scene would hardly have a light. Absent: it has.
+std::optional<Box3f> surroundings(const SolveProblem& problem) {
+  const Target& target = problem.target;
+  Box3f painted;
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+    if (target.weight[i] > 0) painted.extend(target.receivers.samples[i].position);
+  }
+  const float diagonal = painted.diagonal(), longest = max_component(default_region(problem.tracer).extent());
+  const Vec3f around{diagonal, diagonal, diagonal};
+  const Box3f region{painted.min - around, painted.max + around};
+  return max_component(region.extent()) < kHardlySeen * longest ? std::optional(region) : std::nullopt;
+}
+
 // Where lights of an earlier solve stand it reaches, too. Absent: as the problem says.
 std::optional<Box3f> first_region(const SolveProblem& problem, const SolveOptions& options) {
-  if (options.earlier.empty() || !region_may_grow(problem)) return std::nullopt;
+  if (!region_may_grow(problem)) return std::nullopt;
+  if (options.earlier.empty()) return surroundings(problem);
   const Box3f whole = default_region(problem.tracer);
   Box3f region = whole;
   for (const LightSet& set : options.earlier) {
@@ -248,7 +263,12 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
       {options.important_vertices, options.geometry_weight, options.illumination_weight, seed}));
   if (!(basis->published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  auto found = search(basis, problem, first_region(problem, options), nullptr, clock, result);
+  const std::optional<Box3f> first = first_region(problem, options);
+  auto found = search(basis, problem, first, nullptr, clock, result);
+  if (first && options.earlier.empty() && !found->comes_close() && !clock.out_of_time()) {
+    auto everywhere = search_region(basis, problem, std::nullopt, found.get(), found.get(), clock);
+    if (everywhere && everywhere->is_clearly_better_than(*found)) found = std::move(everywhere);
+  }
   if (!(found->was_misled() || found->has_many()) || clock.out_of_time()) return found;
 
   const std::size_t before = basis->importance.chosen.size();

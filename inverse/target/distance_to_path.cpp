@@ -9,6 +9,7 @@
 #include "inverse/numerics/closest_point.h"
 #include "inverse/numerics/geodesic_distance.h"
 #include "inverse/numerics/joined_faces.h"
+#include "inverse/numerics/median.h"
 #include "inverse/numerics/surface_contact.h"
 #include "inverse/numerics/two_sided_surface.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -24,9 +25,9 @@ using Piece = SurfacePath::Piece;
 
 constexpr double kSamePoint = 1e-5;      // corners are one: distance ≤ this × scale
 constexpr double kContact = 5e-3;        // surfaces meet: distance ≤ this × scale …
-constexpr double kContactOfEdge = 0.05;  // … and ≤ this × the shortest edge
+constexpr double kContactOfEdge = 0.05;  // … and ≤ this × the shortest edge, of their triangles and of most
 constexpr double kOnFace = 1e-4;         // a piece of the path lies on a face: distance ≤ this × scale
-constexpr double kCoarse = 0.02;         // triangles are looked at for contacts: edge > this × scale
+constexpr double kCoarse = 0.02;         // edge > this × scale: of others, those that share a corner have no contact
 constexpr double kRounding = 16.0 * std::numeric_limits<float>::epsilon();  // of coordinates
 constexpr std::uint32_t kNone = ~0U;
 
@@ -117,43 +118,70 @@ EdgeLengths edge_lengths(const TriangleCorners& c) {
   return {least, most};
 }
 
-bool share_an_edge(const TriangleCorners& a, const TriangleCorners& b, double tolerance) {
+int shared_corners(const TriangleCorners& a, const TriangleCorners& b, double tolerance) {
   int same = 0;
   for (const Vector3d& p : a) {
-    for (const Vector3d& q : b) same += (p - q).norm() <= tolerance;
+    for (const Vector3d& q : b) same += (p - q).squaredNorm() <= tolerance * tolerance;
   }
-  return same >= 2;
+  return same;
 }
 
-std::vector<numerics::TriangleContact> find_contacts(const ReceiverSurface& surface, const Neighbourhood& near,
-                                                     const numerics::JoinTolerances& tolerances, double radius) {
-  std::vector<EdgeLengths> edges;
-  for (std::uint32_t t = 0; t < near.triangles.size(); ++t) edges.push_back(edge_lengths(near.corners(t)));
-  const auto is_coarse = [&](std::uint32_t t) { return edges[t].longest > kCoarse * radius; };
-  std::vector<numerics::TriangleContact> contacts;
-  std::vector<std::uint32_t> candidates;
-  for (std::uint32_t a = 0; a < near.triangles.size(); ++a) {
-    if (!is_coarse(a)) continue;
-    const TriangleCorners corners = near.corners(a);
-    const Eigen::Array3d least = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - tolerances.contact;
-    const Eigen::Array3d most = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + tolerances.contact;
-    candidates.clear();
-    visit_overlapping(surface.tree, {to_vec3f(least.matrix()), to_vec3f(most.matrix())},
-                      [&](std::uint32_t item) { candidates.push_back(near.number_of(item)); });
+// Where triangles meet without sharing an edge. A larger brush finds what a smaller one does.
+class ContactSearch {
+ public:
+  ContactSearch(const ReceiverSurface& surface, const Neighbourhood& near, const numerics::JoinTolerances& tolerances,
+                double scale)
+      : surface_(surface), near_(near), tolerances_(tolerances), coarse_(kCoarse * scale) {
+    for (std::uint32_t t = 0; t < near.triangles.size(); ++t) edges_.push_back(edge_lengths(near.corners(t)));
+  }
+
+  std::vector<numerics::TriangleContact> run(const renderer::Control& control) const {
+    constexpr std::size_t kTriangles = 256;
+    const std::size_t count = near_.triangles.size(), parts = (count + kTriangles - 1) / kTriangles;
+    std::vector<std::vector<numerics::TriangleContact>> found(parts);
+    renderer::parallel_for(parts, "contacts", control.without_progress(), [&](std::size_t part) {
+      for (std::size_t a = part * kTriangles; a < std::min(count, (part + 1) * kTriangles); ++a) {
+        append_contacts_of(std::uint32_t(a), found[part]);
+      }
+    });
+    std::vector<numerics::TriangleContact> contacts;
+    for (const auto& some : found) contacts.insert(contacts.end(), some.begin(), some.end());
+    return contacts;
+  }
+
+ private:
+  // With those of higher numbers.
+  void append_contacts_of(std::uint32_t a, std::vector<numerics::TriangleContact>& contacts) const {
+    const TriangleCorners corners = near_.corners(a);
+    const double reach = tolerance_of(edges_[a].shortest);
+    const Eigen::Array3d least = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - reach;
+    const Eigen::Array3d most = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + reach;
+    std::vector<std::uint32_t> candidates;
+    visit_overlapping(surface_.tree, {to_vec3f(least.matrix()), to_vec3f(most.matrix())}, [&](std::uint32_t item) {
+      const std::uint32_t b = near_.number_of(item);
+      if (b != kNone && b > a) candidates.push_back(b);
+    });
     std::sort(candidates.begin(), candidates.end());
     for (const std::uint32_t b : candidates) {
-      if (b == kNone || b == a || (b < a && is_coarse(b))) continue;
-      const TriangleCorners other = near.corners(b);
-      if (share_an_edge(corners, other, tolerances.same_point)) continue;
-      const double tolerance = std::max(
-          tolerances.same_point,
-          std::min({tolerances.contact, kContactOfEdge * edges[a].shortest, kContactOfEdge * edges[b].shortest}));
+      const TriangleCorners other = near_.corners(b);
+      const bool coarse = edges_[a].longest > coarse_ || edges_[b].longest > coarse_;
+      if (shared_corners(corners, other, tolerances_.same_point) >= (coarse ? 2 : 1)) continue;
+      const double tolerance = tolerance_of(std::min(edges_[a].shortest, edges_[b].shortest));
       if (const auto segment = numerics::surface_contact(corners, other, tolerance))
         contacts.push_back({a, b, *segment});
     }
   }
-  return contacts;
-}
+
+  double tolerance_of(double edge) const {
+    return std::max(tolerances_.same_point, std::min(tolerances_.contact, kContactOfEdge * edge));
+  }
+
+  const ReceiverSurface& surface_;
+  const Neighbourhood& near_;
+  const numerics::JoinTolerances& tolerances_;
+  double coarse_;  // metres
+  std::vector<EdgeLengths> edges_;
+};
 
 // The part of a segment that lies in a convex face, up to a tolerance.
 std::optional<std::pair<Vector2d, Vector2d>> clip(const numerics::FlatSurface& surface, std::uint32_t face,
@@ -206,14 +234,22 @@ double scale_of(const ReceiverSurface& surface, double radius) {
   return surface.tree.nodes.empty() ? 0 : std::min(radius, double(surface.tree.nodes.front().box.diagonal()));
 }
 
+// No larger than the receivers' spacing allows, however large the brush.
+double contact_tolerance(const Neighbourhood& near, double scale) {
+  std::vector<double> shortest;
+  for (std::uint32_t t = 0; t < near.triangles.size(); ++t) shortest.push_back(edge_lengths(near.corners(t)).shortest);
+  if (shortest.empty()) return 0;
+  return std::min(kContact * scale, kContactOfEdge * numerics::median(std::move(shortest)));
+}
+
 LocalSurface make_local_surface(const ReceiverSurface& surface, const SurfacePath& path, double radius, double scale,
                                 const renderer::Control& control) {
   LocalSurface local{make_neighbourhood(surface, triangles_near(surface, path, radius, control)), {}, {}, {}};
   double largest = 0;
   for (const Vector3d& p : local.near.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   const double same_point = std::max(kSamePoint * scale, kRounding * largest);
-  const numerics::JoinTolerances tolerances{same_point, std::max(kContact * scale, same_point)};
-  const auto contacts = find_contacts(surface, local.near, tolerances, scale);
+  const numerics::JoinTolerances tolerances{same_point, std::max(contact_tolerance(local.near, scale), same_point)};
+  const auto contacts = ContactSearch(surface, local.near, tolerances, scale).run(control);
   local.joined = numerics::join_faces(local.near.positions, local.near.triangles, contacts, tolerances);
   local.sides = numerics::make_two_sided(local.joined);
   local.first_face.assign(local.near.triangles.size() + 1, 0);

@@ -1,5 +1,6 @@
 #include "inverse/target/paint.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/world_limits.h"
 #include "tests/inverse/target/surfaces.h"
+#include "tests/support/code_scenes.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -92,6 +94,25 @@ TEST(Paint, ValuesNeitherFallBelowZeroNorOverflow) {
   Stroke brighten = middle_dab(BrushMode::kMultiply, BrushFalloff::kHard);
   brighten.color = {renderer::kBrightest, 1, 1};
   EXPECT_EQ(paint_floor(brighten).target.illumination[floor_receiver(4, 4)], (Vec3f{renderer::kBrightest, 4, 2}));
+}
+
+// However finely both are sampled: a ball that stands on the floor is reached over the place where it does.
+TEST(Paint, LargerBrushesReachWhatSmallerOnesDo) {
+  for (const float max_edge : {0.4F, 0.2F, 0.1F}) {
+    renderer::Scene scene;
+    test::add_mesh(scene, test::rectangle({0, 0, 4}, {4, 0, 0}, {0, 0, -4}), test::lambert({1, 1, 1}), "floor");
+    test::add_mesh(scene, test::sphere({2, 0.59F, 2}, 0.6F, 24), test::lambert({1, 1, 1}), "ball");
+    const Target base = make_target(make_receivers(scene, {.max_edge = max_edge}), {});
+    Stroke stroke{.mode = BrushMode::kSet, .color = {1, 2, 3}, .falloff = BrushFalloff::kHard};
+    stroke.path = {{0.5F, 0, 2}};
+    stroke.facing = false;
+    for (const float radius : {6.0F, 60.0F, 6000.0F}) {
+      stroke.radius = radius;
+      const Target painted = paint(base, {StrokeBase::kBlack, {stroke}}, {}).target;
+      const auto left = std::count(painted.illumination.begin(), painted.illumination.end(), Vec3f{});
+      EXPECT_EQ(left, 0) << max_edge << ' ' << radius;
+    }
+  }
 }
 
 TEST(Paint, StrokesApplyInOrder) {
