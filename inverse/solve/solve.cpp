@@ -183,13 +183,18 @@ bool region_may_grow(const SolveProblem& problem) {
   return load_transport_cache_header(*problem.cache_file).grid.region == default_region(problem.tracer);
 }
 
-// Of what is painted, where a grid of the whole scene would hardly have a light. Absent: it has.
+// Of what is painted, where a grid of the whole scene would hardly have a light. Absent: it has, or what is painted is
+// hardly a surface.
 std::optional<Box3f> surroundings(const SolveProblem& problem) {
   const Target& target = problem.target;
   Box3f painted;
+  std::size_t weighed = 0;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
-    if (target.weight[i] > 0) painted.extend(target.receivers.samples[i].position);
+    if (!(target.weight[i] > 0)) continue;
+    painted.extend(target.receivers.samples[i].position);
+    ++weighed;
   }
+  if (weighed < kReceiversPerLight) return std::nullopt;
   const float diagonal = painted.diagonal(), longest = max_component(default_region(problem.tracer).extent());
   const Vec3f around{diagonal, diagonal, diagonal};
   const Box3f region{painted.min - around, painted.max + around};
