@@ -103,8 +103,7 @@ TEST(Paint, LargerBrushesReachWhatSmallerOnesDo) {
     test::add_mesh(scene, test::rectangle({0, 0, 4}, {4, 0, 0}, {0, 0, -4}), test::lambert({1, 1, 1}), "floor");
     test::add_mesh(scene, test::sphere({2, 0.59F, 2}, 0.6F, 24), test::lambert({1, 1, 1}), "ball");
     const Target base = make_target(make_receivers(scene, {.max_edge = max_edge}), {});
-    Stroke stroke{.mode = BrushMode::kSet, .color = {1, 2, 3}, .falloff = BrushFalloff::kHard};
-    stroke.path = {{0.5F, 0, 2}};
+    Stroke stroke{.mode = BrushMode::kSet, .color = {1, 2, 3}, .falloff = BrushFalloff::kHard, .path = {{0.5F, 0, 2}}};
     stroke.facing = false;
     for (const float radius : {6.0F, 60.0F, 6000.0F}) {
       stroke.radius = radius;
