@@ -125,11 +125,16 @@ class Propagation {
     return {fan_.data() + fan_begin_[vertex], fan_begin_[vertex + 1] - fan_begin_[vertex]};
   }
 
+  // Of ways of one length the straight one has the image farther away: the others only pass a vertex that it meets.
   void reach_vertex(std::uint32_t vertex, const Reached& reached) {
-    if (!(reached.distance < reached_[vertex].distance - kSame * reach_) || reached.distance > reach_) return;
-    const bool left = reached_[vertex].left;
-    reached_[vertex] = reached;
-    reached_[vertex].left = left;
+    Reached& known = reached_[vertex];
+    if (!known.left && std::abs(reached.distance - known.distance) <= kSame * reach_) {
+      known.radius = std::max(known.radius, reached.radius);
+    }
+    if (!(reached.distance < known.distance - kSame * reach_) || reached.distance > reach_) return;
+    const bool left = known.left;
+    known = reached;
+    known.left = left;
     events_.push({reached.distance, ++count_, true, vertex});
   }
 

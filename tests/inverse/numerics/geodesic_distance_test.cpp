@@ -89,6 +89,19 @@ TEST(GeodesicDistance, FromAnEdgeOrAVertexTheSame) {
   }
 }
 
+// On the lines of a fine mesh, whose vertices windows do not get to alone.
+TEST(GeodesicDistance, FromAnEdgeOrAVertexOfAFineMeshTheSame) {
+  for (const int cells : {32, 64}) {
+    const Soup soup = plane({"fine", cells, cells, 0});
+    for (const Vector3d& at : {Vector3d(0.5, 0.5, 0), Vector3d(0.515625, 0.5, 0), Vector3d(0.40625, 0.40625, 0),
+                               Vector3d(0, 0, 0), Vector3d(0, 0.25, 0)}) {
+      const Worst worst =
+          worst_error(soup, distances_to(soup, at, at, 0.6), 0.6, [&](const Vector3d& p) { return (p - at).norm(); });
+      EXPECT_LT(worst.error, 1e-3) << cells << " " << at.transpose() << " " << worst.place.transpose();
+    }
+  }
+}
+
 // A floor at x ≥ 0 that faces up, and at x = 0 a wall above it that faces the floor, or one below that faces away.
 Soup corner(double up) {
   Soup soup = make_flat_sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 7, 9, 0.48);
