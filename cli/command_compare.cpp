@@ -24,6 +24,7 @@ namespace {
 constexpr NumberRange kPixelsPerDegreeRange{.min = 1, .max = 1000};
 
 struct CompareCommand {
+  const CLI::App* command = nullptr;
   CommonOptions common;
   std::string a, b, output;
   std::optional<double> fail_above, fail_above_flip;
@@ -79,12 +80,21 @@ void refuse_options_of_frames(const CompareCommand& options) {
   if (options.resize) refuse("--resize");
 }
 
+void warn_of_idle(const CompareCommand& options, const std::vector<std::string>& names, const std::string& where,
+                  Session& session) {
+  for (const std::string& name : names) {
+    if (was_given(*options.command, name)) session.warn(fmt::format("{}: does nothing between {}", name, where));
+  }
+}
+
 int compare_two_targets(const CompareCommand& options, Session& session) {
   refuse_options_of_frames(options);
   const inverse::Target a = inverse::load_illumination(options.a);
   const inverse::Target b = inverse::load_target(options.b);
   session.warn(a.warnings);
   session.warn(b.warnings);
+  warn_of_idle(options, {"--ocio", "--display", "--view", "--look", "--exposure", "--no-flip", "--pixels-per-degree"},
+               "two targets", session);
   session.stop_if_interrupted();
   const inverse::TargetComparison comparison = naming_file(options.a, [&] { return inverse::compare_targets(a, b); });
   const renderer::Vec3f place = b.receivers.positions[comparison.max_at];
@@ -101,6 +111,9 @@ int compare_two_frames(const CompareCommand& options, Session& session) {
   const FrameComparison comparison =
       naming_file(options.a, [&] { return compare_frames(frames, options.frames, session.control()); });
   session.warn(frames.notes);
+  if (!frames.by_view) {
+    warn_of_idle(options, {"--display", "--view", "--look", "--exposure"}, "two display pictures", session);
+  }
   if (const std::size_t bad = comparison.whole.image.not_finite; bad > 0) {
     session.warn(renderer::counted(bad, "pixel is not finite and left out", "pixels are not finite and left out"));
   }
@@ -129,6 +142,7 @@ int run_compare(const CompareCommand& options) {
 
 CommandRun add_compare(CLI::App& command) {
   const auto options = std::make_shared<CompareCommand>();
+  options->command = &command;
   add_input(command, {"a", "A", "Frame or target"}, options->a);
   add_input(command, {"b", "B", "The reference"}, options->b);
   add_output(command, {"-o,--output", "DIFF.png", "A, B, 8 times their difference and FLIP, as the view shows them"},

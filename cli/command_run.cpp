@@ -195,6 +195,7 @@ int run_run(RunCommand options) {
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   const std::vector<NamedCamera> cameras = cameras_of(stage, session);
+  for (const NamedCamera& named : cameras) require_frame(named.camera, options.frame);
   session.require_outputs_in(options.folder(), picture_files(cameras));
   warn_of_scene_lights(stage, options.choices, session);
   session.warn(idle_target_options(*options.command));
@@ -211,8 +212,7 @@ int run_run(RunCommand options) {
   const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
   if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
-  save_found_lights(options.scene, result, options.folder() / kLightsFile,
-                    output_scene_options(stage, options.choices));
+  save_found_lights(stage, result, options.folder() / kLightsFile, output_scene_options(stage, options.choices));
   const inverse::Target found = found_target(target, result);
   inverse::save_target(found, options.folder() / "found.glb");
   const inverse::TargetComparison comparison = inverse::compare_targets(found, target);

@@ -88,6 +88,7 @@ ComparedFrames load_compared_frames(const std::string& a, const std::string& b, 
   show_linear(frame_a, frame_b, view, frames.notes);
   show_linear(frame_b, frame_a, view, frames.notes);
   frames.scene_linear = frame_a.scene_linear() && frame_b.scene_linear();
+  frames.by_view = frame_a.scene_linear() || frame_b.scene_linear();
   frames.a = std::move(frame_a.colors);
   frames.b = std::move(frame_b.colors);
   return frames;

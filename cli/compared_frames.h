@@ -12,6 +12,7 @@ namespace chiaro::cli {
 struct ComparedFrames {
   renderer::Image a, b;
   bool scene_linear = false;
+  bool by_view = false;            // either was scene-linear, so that the view decides what is seen of it
   std::vector<std::string> notes;  // what they differ in besides their pixels, and what was done about it
 };
 

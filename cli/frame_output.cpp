@@ -106,9 +106,10 @@ void add_frame_options(CLI::App& command, FrameOptions& options, const std::stri
              {"--noise-threshold", "E",
               "Sample until every 8 x 8 pixels' standard error is E of their mean; " + samples + " is then the most"},
              options.noise_threshold, kPositive);
-  add_number(command, {"--clamp-direct", "L", "Most cd/m² of a sample's direct light, which biases (default: none)"},
+  add_number(command,
+             {"--clamp-direct", "L", "Most cd/m² that a light adds to a sample directly, which biases (default: none)"},
              options.clamp_direct, kPositive);
-  add_number(command, {"--clamp-indirect", "L", "The same of indirect light"}, options.clamp_indirect, kPositive);
+  add_number(command, {"--clamp-indirect", "L", "The same after each bounce"}, options.clamp_indirect, kPositive);
   add_flag(command, "--wide-highlights", options.wide_highlights,
            "Mirrors show point lights as lamps of a centimetre, and throw blurred caustics: less noise, but biased");
   add_lens_options(command, options.lens);
@@ -124,6 +125,11 @@ void require_color_choices(const FrameOptions& options, bool preview) {
   if (preview) require_view(options.view);
   if (options.output_space.empty()) return;
   renderer::require_linear_space(renderer::find_ocio_config(options.view.config), options.output_space);
+}
+
+void require_frame(const renderer::Camera& camera, const FrameOptions& options) {
+  frame_size(camera, options.size);
+  require_lens(options.lens, camera);
 }
 
 renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,

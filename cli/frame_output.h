@@ -39,6 +39,9 @@ struct FrameRun {
 // samples: the name of the option that says how many there are.
 void add_frame_options(CLI::App& command, FrameOptions& options, const std::string& samples);
 
+// UsageError where the camera cannot have a frame of that size, or a lens like that.
+void require_frame(const renderer::Camera& camera, const FrameOptions& options);
+
 // Error where the colour spaces, displays or views asked for do not exist, or the space is not linear. UsageError where
 // two options expose the preview.
 void require_color_choices(const FrameOptions& options, bool preview);

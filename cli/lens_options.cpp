@@ -61,6 +61,10 @@ void add_lens_options(CLI::App& command, LensOptions& options) {
   add_number(command, {"--iso", "N", "Speed of the film (default 100)"}, options.iso, kPositive)->needs(shutter);
 }
 
+void require_lens(const LensOptions& options, const renderer::Camera& camera) {
+  if (options.f_number) focal_length(options, camera);
+}
+
 renderer::Lens lens_of(const LensOptions& options, const renderer::Camera& camera, const renderer::RayTracer& tracer) {
   if (!options.f_number) return {};
   constexpr float kMetres = 1e-3F;

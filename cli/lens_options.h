@@ -29,6 +29,9 @@ float camera_exposure(const LensOptions& options);
 void add_lens_options(CLI::App& command, LensOptions& options);
 
 // UsageError where an orthographic camera has no focal length.
+void require_lens(const LensOptions& options, const renderer::Camera& camera);
+
+// What require_lens() asks is so.
 renderer::Lens lens_of(const LensOptions& options, const renderer::Camera& camera, const renderer::RayTracer& tracer);
 
 }  // namespace chiaro::cli

@@ -18,6 +18,7 @@ namespace {
 
 template <class T>
 bool parses_whole(std::string_view text, T& value) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);  // which from_chars knows not
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   return error == std::errc() && stop == end;

@@ -16,12 +16,15 @@
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
 #include "renderer/core/file_lock.h"
+#include "renderer/core/shortened.h"
 #include "renderer/io/referred_files.h"
 
 namespace chiaro::cli {
 namespace {
 
 using renderer::Error;
+
+constexpr std::size_t kLongestName = 100;  // bytes of a name of a user's, of which a file's may have 255
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -112,18 +115,23 @@ void require_extension(const std::filesystem::path& path, const std::vector<std:
   throw UsageError(fmt::format("'{}' (expected a name ending in {})", path.string(), fmt::join(extensions, " or ")));
 }
 
-void require_writable(const std::filesystem::path& path) {
+void require_file_name(const std::filesystem::path& path) {
   std::error_code ignored;
-  const std::filesystem::path folder = folder_of(path);
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
-  }
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error({path.string(), "", "is a folder", "the name of a file"});
   }
   if (is_standard_output(path)) {
     throw Error({path.string(), "", "is where standard output goes", "another file for the summary"});
   }
+}
+
+void require_writable(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path folder = folder_of(path);
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw Error({path.string(), "", "cannot be written: no such folder", "a folder that exists"});
+  }
+  require_file_name(path);
   try_to_make_file(folder, path);
 }
 
@@ -178,7 +186,7 @@ std::string file_name_of(const std::string& name) {
     if (!plain) c = '_';
   }
   if (result.front() == '.') result.front() = '_';
-  return result.substr(0, 100);
+  return renderer::shortened(result, kLongestName);
 }
 
 }  // namespace chiaro::cli

@@ -113,10 +113,11 @@ void decode_display(const Image& stored, const PictureEncoding& encoding, Painte
       encoding.view.view.view.empty() ? "through the default view" : "through " + encoding.view.view.view;
 }
 
-void decode_space(const Image& stored, const PictureEncoding& encoding, PaintedPicture& picture) {
+void decode_space(const renderer::ImageFile& stored, const PictureEncoding& encoding, PaintedPicture& picture) {
   const auto config = renderer::find_ocio_config(encoding.view.config);
   const auto decode = [&](Image& image) { renderer::convert_to_rec709(image, config, encoding.space); };
-  decode_pixels(stored, decode, picture);
+  decode_pixels(stored.image, decode, picture);
+  if (stored.whole_numbers) leave_out_white(stored.image, encoding.keep_white, picture);
   picture.encoding = "in " + encoding.space;
 }
 
@@ -136,7 +137,7 @@ PaintedPicture load_painted_picture(const std::string& file, const PictureEncodi
   picture.height = image.height;
   set_alpha(image, picture);
   if (!encoding.space.empty()) {
-    decode_space(image, encoding, picture);
+    decode_space(stored, encoding, picture);
     undo_exposure(encoding.view.view.exposure, picture);
   } else if (!stored.whole_numbers) {
     const std::string space = renderer::named_space(stored);

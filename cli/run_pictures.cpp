@@ -23,10 +23,11 @@ Image shrunk(const Image& image) {
   const std::array<int, 3> channels{image.find_channel("R"), image.find_channel("G"), image.find_channel("B")};
   Image result =
       renderer::make_image(std::max(1, image.width / step), std::max(1, image.height / step), {"R", "G", "B"});
-  for (int y = 0; y < result.height * step && y < image.height; ++y) {
-    for (int x = 0; x < result.width * step && x < image.width; ++x) {
+  const int rows = std::min(step, image.height);  // of a picture that is less high than a step as well
+  for (int y = 0; y < result.height * rows; ++y) {
+    for (int x = 0; x < result.width * step; ++x) {
       for (std::size_t c = 0; c < 3; ++c) {
-        result.at(x / step, y / step)[c] += image.at(x, y)[channels[c]] / float(step * step);
+        result.at(x / step, y / rows)[c] += image.at(x, y)[channels[c]] / float(step * rows);
       }
     }
   }

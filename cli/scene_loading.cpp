@@ -11,6 +11,7 @@ namespace chiaro::cli {
 
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session) {
+  const FileVersion version = version_of(path);
   renderer::LoadedScene loaded = renderer::load_gltf(path, load, session.control());
   session.warn(loaded.warnings);
   session.stop_if_interrupted();
@@ -18,6 +19,7 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
     throw renderer::Error({path, "", "has no triangles", "a scene with surfaces"});
   }
   LoadedStage stage;
+  stage.file = version;
   auto scene = std::make_unique<renderer::Scene>(
       renderer::with_materials(std::move(loaded.scene), material_override(materials)));
   renderer::make_mip_maps(*scene);

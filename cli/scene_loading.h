@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/environment_options.h"
+#include "cli/file_version.h"
 #include "cli/material_options.h"
 #include "cli/session.h"
 #include "renderer/io/load_gltf.h"
@@ -19,6 +20,7 @@ struct LoadedStage {
   renderer::Lights lights;       // of the scene file
   std::vector<int> light_nodes;  // as LoadedScene's
   std::unique_ptr<const renderer::RayTracer> tracer;
+  FileVersion file;  // that it was read from
 };
 
 // Loads a glTF scene, replaces its materials, passes its warnings on, and builds the ray tracer. Error where it has no

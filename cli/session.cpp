@@ -39,6 +39,7 @@ void Session::require_outputs_in(const std::filesystem::path& folder, const std:
   require_not_a_file(folder);
   std::vector<std::filesystem::path> files;
   for (const std::string& name : names) files.push_back(folder / name);
+  for (const std::filesystem::path& file : files) require_file_name(file);
   require_apart(files);
 }
 

@@ -13,6 +13,7 @@ using renderer::Vec2f;
 constexpr double kOnEdge = 1e-6;   // texels outside a triangle that still count as in it, or less
 constexpr float kInside = 0.05F;   // texels inside two triangles that make them overlap, or more
 constexpr float kRounding = 0.5F;  // texels that coordinates may leave the picture by, or less
+constexpr double kFlat = 1e-3;     // texels of height, or less: a line but for the rounding of its coordinates
 
 // Texels around the edges of a box.
 int first_texel(float edge, int count) { return std::clamp(int(std::floor(edge)) - 1, 0, count); }
@@ -39,7 +40,7 @@ void add_triangle(const FlatTriangle& flat, const TexelLayout& layout, TexelCove
     ++coverage.triangles_outside;
     return;
   }
-  if (flat.signed_area() == 0) return;
+  if (!(flat.height() > kFlat)) return;
   for (int y = first_texel(box.min.y, layout.height); y < end_texel(box.max.y, layout.height); ++y) {
     for (int x = first_texel(box.min.x, layout.width); x < end_texel(box.max.x, layout.width); ++x) {
       const double depth = flat.depth(flat.at(x + 0.5, y + 0.5));
@@ -69,6 +70,15 @@ Box3f FlatTriangle::bounds() const {
 Barycentric FlatTriangle::at(double x, double y) const {
   const double twice = 2 * signed_area();
   return {cross(1, 2, x, y) / twice, cross(2, 0, x, y) / twice, cross(0, 1, x, y) / twice};
+}
+
+double FlatTriangle::height() const {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    longest = std::max(longest, std::hypot(x_[next] - x_[k], y_[next] - y_[k]));
+  }
+  return longest > 0 ? 2 * std::abs(signed_area()) / longest : 0;
 }
 
 double FlatTriangle::depth(const Barycentric& at) const {

@@ -25,6 +25,7 @@ class FlatTriangle {
   double signed_area() const { return cross(0, 1, x_[2], y_[2]) / 2; }
   renderer::Box3f bounds() const;  // z: 0
   Barycentric at(double x, double y) const;
+  double height() const;                      // over its longest edge
   double depth(const Barycentric& at) const;  // to the nearest edge; negative outside
 
  private:

@@ -130,7 +130,7 @@ double Baker::measure_indirect_error(const renderer::Control& control) {
     renderer::TraceOptions options{kCheckSamples, header_.settings.bounces, header_.settings.seed + 77 + k, false};
     const auto all = renderer::trace_illumination(tracer_, samples, unity, options, control);
     options.bounces = 0;
-    const auto direct = renderer::trace_illumination(tracer_, samples, unity, options);
+    const auto direct = renderer::trace_illumination(tracer_, samples, unity, options, control);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const auto& c = indirect[i].channel;
       const Vec3f traced = all.value[i] - direct.value[i];

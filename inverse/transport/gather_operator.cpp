@@ -110,6 +110,7 @@ SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSampl
   constexpr std::size_t kBlock = 32;
   renderer::parallel_for((chosen.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(chosen.size(), (block + 1) * kBlock); ++i) {
+      if (control.stop_requested()) throw renderer::Interruption();
       rows[i] = row_of(gather_hits(tracer, from[chosen[i]], chosen[i], rays, seed), rays, nearest);
     }
   });

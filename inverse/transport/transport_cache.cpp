@@ -210,11 +210,7 @@ TransportCacheReader::TransportCacheReader(const std::filesystem::path& path)
     : file_(path), header_(header_of(file_)), channels_(find_channels(file_.shape().channels, path.string())) {}
 
 bool TransportCacheReader::is_of(const TransportCache& header) const {
-  const Attributes expected = transport_cache_attributes(header);
-  const Attributes& found = file_.attributes();
-  return std::all_of(expected.begin(), expected.end(), [&](const auto& attribute) {
-    return std::find(found.begin(), found.end(), attribute) != found.end();
-  });
+  return transport_cache_attributes(header_) == transport_cache_attributes(header);
 }
 
 bool TransportCacheReader::read(TransportBlock& block) {
@@ -239,6 +235,7 @@ TransportCache load_transport_cache_header(const std::filesystem::path& path) {
     return reader.header();
   }
   const renderer::ImageFile file = renderer::load_image_header(path);
+  if (file.part) throw Error({path.string(), "dataWindow", "is a part of a cache", "a whole one"});
   require_room_for_entries(std::size_t(file.image.height), std::size_t(file.image.width), path);
   return transport_cache_from(file.attributes, file.image.width, file.image.height, path.string());
 }

@@ -125,6 +125,7 @@ void write_atomically(const std::filesystem::path& path,
   }
   const std::filesystem::path aside = name_aside(path);
   const Unfinished unfinished(aside);
+  ::unlink(aside.c_str());  // whatever has the name is no file of ours; nothing is written through a link
   try {
     write(aside);
     move_into_place(aside, path);

@@ -19,6 +19,8 @@
 #include "renderer/image/decode_webp.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/exr_header.h"
+#include "renderer/image/image_orientation.h"
+#include "renderer/image/radiance_header.h"
 #include "renderer/image/read_through_library.h"
 
 namespace chiaro::renderer {
@@ -126,6 +128,23 @@ void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
                "a flat image of a sensible size"});
 }
 
+bool has_format(const OIIO::ImageInput& input, const char* format) {
+  return std::strcmp(input.format_name(), format) == 0;
+}
+
+// OpenEXR alone has a data window within a display window. What other formats have is where a page or a layer lay.
+OIIO::ImageSpec spec_of(const OIIO::ImageInput& input) {
+  OIIO::ImageSpec spec = input.spec();
+  if (has_format(input, "openexr")) return spec;
+  spec.x = spec.y = spec.full_x = spec.full_y = 0;
+  spec.full_width = spec.width, spec.full_height = spec.height;
+  return spec;
+}
+
+int orientation_of(const OIIO::ImageInput& input) {
+  return has_format(input, "openexr") ? 1 : input.spec().get_int_attribute("Orientation", 1);
+}
+
 // The part of the picture that there are pixels of, as OpenEXR's data window within its display window.
 bool is_cropped(const OIIO::ImageSpec& spec) {
   return spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
@@ -151,17 +170,22 @@ bool has_associated_alpha(const OIIO::ImageSpec& spec, std::string_view format) 
 }
 
 ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& path) {
-  const OIIO::ImageSpec& spec = input.spec();
+  const OIIO::ImageSpec spec = spec_of(input);
   check_size(spec, path.string());
   check_window(spec, path.string());
   ImageFile file;
   file.image = Image{spec.full_width, spec.full_height, spec.channelnames, {}};
-  const bool exr = std::strcmp(input.format_name(), "openexr") == 0;
+  file.part = is_cropped(spec);
+  if (is_turned(orientation_of(input))) std::swap(file.image.width, file.image.height);
+  const bool exr = has_format(input, "openexr");
   file.associated_alpha = has_associated_alpha(spec, input.format_name());
   file.whole_numbers = !spec.format.is_floating_point();
   file.srgb_curve =
       file.whole_numbers && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
   for (const OIIO::ParamValue& value : spec.extra_attribs) append_attribute(file.attributes, value, exr);
+  if (!has_format(input, "hdr")) return file;
+  const RadianceHeader radiance = read_radiance_header(path);
+  if (radiance.chromaticities) file.attributes.emplace_back("chromaticities", *radiance.chromaticities);
   return file;
 }
 
@@ -283,16 +307,23 @@ Image in_window(const Image& part, const OIIO::ImageSpec& spec) {
   return whole;
 }
 
+// What the pixels were before they were multiplied for display.
+void undo_exposure(const std::filesystem::path& path, Image& image) {
+  const Vec3f multiplied = read_radiance_header(path).multiplied;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] /= multiplied[int(i % 3)];
+}
+
 ImageFile read_image(const std::filesystem::path& path) {
   OpenImage opened = open(path);
   ImageFile file = header_of(*opened.input, path);
   if (!may_hold(std::filesystem::file_size(path), opened.input->spec().image_bytes(true))) {
     throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
   }
-  const OIIO::ImageSpec& spec = opened.input->spec();
+  const OIIO::ImageSpec spec = spec_of(*opened.input);
   Image image = make_image(spec.width, spec.height, std::move(file.image.channel_names));
   read_pixels(opened, path.string(), image);
-  file.image = is_cropped(spec) ? in_window(image, spec) : std::move(image);
+  if (has_format(*opened.input, "hdr")) undo_exposure(path, image);
+  file.image = upright(file.part ? in_window(image, spec) : std::move(image), orientation_of(*opened.input));
   return file;
 }
 

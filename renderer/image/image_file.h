@@ -27,10 +27,12 @@ struct ImageFile {
   bool whole_numbers = false;  // pixels are stored as whole numbers, as in display pictures
   bool srgb_curve = false;  // values are on the sRGB curve, as whole-number pixels are where the file says nothing else
   bool associated_alpha = false;  // colours are stored multiplied by the alpha, on whatever curve
+  bool part = false;  // the file has pixels of a part of the picture, or of more: OpenEXR's data window is another one
 };
 
 // Any file that OpenImageIO reads, values as stored (8-bit as 0 to 1, no colour conversion, not multiplied by alpha or
-// divided by it). Error where unreadable, truncated, or not an image.
+// divided by it), as it is to be seen (image_orientation.h). Of Radiance's pictures the values are those before
+// EXPOSURE and COLORCORR, and PRIMARIES are chromaticities. Error where unreadable, truncated, or not an image.
 ImageFile load_image(const std::filesystem::path& path);
 // Header only: size, channel names and attributes; pixels stay empty.
 ImageFile load_image_header(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/shortened.h"
 #include "renderer/image/color_management.h"
 #include "renderer/image/known_primaries.h"
 #include "renderer/image/srgb_curve.h"
@@ -63,7 +64,7 @@ Image converted_from(const std::string& space, const ImageFile& file, const std:
     convert_to_rec709(colors, find_ocio_config(config), space);
   } catch (const Error& error) {
     throw Error({name, kColorSpaceAttribute,
-                 fmt::format("is \"{}\", but {}: {}", space.substr(0, 200), error.parts().file, error.parts().problem),
+                 fmt::format("is \"{}\", but {}: {}", shortened(space, 200), error.parts().file, error.parts().problem),
                  "the OpenColorIO config that it was written with, by --ocio or $OCIO"});
   }
   return colors;

@@ -255,6 +255,8 @@ bool accessor_is_float(const GltfDocument& document, int accessor) {
   return document.model->accessors[accessor].componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
+std::size_t element_count(const GltfDocument& document, int accessor) { return elements_of(document, accessor).count; }
+
 std::vector<float> read_floats(const GltfDocument& document, int accessor, int components, const std::string& place) {
   return read<float>(document, accessor, components, place);
 }

@@ -18,6 +18,9 @@ int accessor_components(const GltfDocument& document, int accessor);
 
 bool accessor_is_float(const GltfDocument& document, int accessor);
 
+// Error where it reaches beyond its buffer, or is malformed.
+std::size_t element_count(const GltfDocument& document, int accessor);
+
 // Elements one after the other. Error, naming `place`, where the accessor has other than `components` components,
 // reaches beyond its buffer, or is malformed.
 std::vector<float> read_floats(const GltfDocument& document, int accessor, int components, const std::string& place);

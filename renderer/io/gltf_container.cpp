@@ -1,6 +1,7 @@
 #include "renderer/io/gltf_container.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -101,7 +102,12 @@ std::string_view without_blanks(std::string_view text) {
 
 }  // namespace
 
-bool writes_gltf_text(const std::filesystem::path& path) { return path.extension() == ".gltf"; }
+bool writes_gltf_text(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".gltf";
+}
 
 bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
 

@@ -96,9 +96,20 @@ std::size_t append_view(ordered_json& root, std::string& binary, const std::stri
   return views.size() - 1;
 }
 
+// Images that nothing uses may be missing, or of a kind that is not read here; the scene refers to them as before.
+std::optional<std::string> image_bytes(const ordered_json& image, const GltfEmbedding& embedding) {
+  try {
+    return bytes_of(image, embedding, "images");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 void embed_image(ordered_json& root, std::size_t index, std::optional<std::string>& binary,
                  const GltfEmbedding& embedding) {
-  const std::string bytes = bytes_of(root["images"][index], embedding, fmt::format("images[{}]", index));
+  const std::optional<std::string> found = image_bytes(root["images"][index], embedding);
+  if (!found) return;
+  const std::string& bytes = *found;
   const std::string mime_type = mime_type_of(root["images"][index], bytes);
   if (embedding.as_text) {
     root["images"][index]["uri"] = make_data_uri(mime_type, bytes);

@@ -1,5 +1,6 @@
 #include "renderer/io/gltf_environment.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -8,6 +9,7 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 #include "renderer/image/image_file.h"
 #include "renderer/image/texel_encoding.h"
 
@@ -15,6 +17,7 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr const char* kExtension = "EXT_lights_image_based";
+constexpr int kMostFace = 4096;  // pixels a side: a map of 16384 x 8192
 
 // +X, -X, +Y, -Y, +Z, -Z, each as it is seen from within.
 struct CubeMap {
@@ -72,6 +75,10 @@ CubeMap read_cube_map(const GltfDocument& document, const tinygltf::Value& light
     if (texture.width != texture.height || (cube.size > 0 && texture.width != cube.size)) {
       fail(document, fmt::format("images[{}]", image), fmt::format("{} x {} pixels", texture.width, texture.height),
            "a square as large as the other faces of the cube");
+    }
+    if (texture.width > kMostFace) {
+      fail(document, fmt::format("images[{}]", image), fmt::format("{} x {} pixels", texture.width, texture.height),
+           fmt::format("at most {0} x {0}", kMostFace));
     }
     cube.size = texture.width;
     cube.faces[face] = radiance_of(texture);
@@ -139,6 +146,19 @@ Mat4f rotation_of(const GltfDocument& document, const tinygltf::Value& light, co
   return make_transform({}, {float(q[0] / l), float(q[1] / l), float(q[2] / l), float(q[3] / l)}, {1, 1, 1});
 }
 
+float intensity_of(const GltfDocument& document, const tinygltf::Value& light, const CubeMap& cube,
+                   const std::string& place) {
+  const double intensity = light.Has("intensity") ? light.Get("intensity").GetNumberAsDouble() : 1;
+  double brightest = 1;
+  for (const std::vector<Vec3f>& face : cube.faces) {
+    for (const Vec3f pixel : face) brightest = std::max(brightest, double(max_component(pixel)));
+  }
+  if (intensity * brightest > double(kBrightest)) {
+    fail(document, place + ".intensity", "is too bright", fmt::format("at most {:g} cd/m²", kBrightest));
+  }
+  return float(intensity);
+}
+
 std::string name_of(const tinygltf::Value& light) {
   const std::string name =
       light.Has("name") && light.Get("name").IsString() ? light.Get("name").Get<std::string>() : "";
@@ -157,7 +177,7 @@ std::optional<EnvironmentLight> read_environment(const GltfDocument& document, s
   const CubeMap cube = read_cube_map(document, source, place);
   EnvironmentLight light;
   light.name = name_of(source);
-  light.intensity = source.Has("intensity") ? float(source.Get("intensity").GetNumberAsDouble()) : 1;
+  light.intensity = intensity_of(document, source, cube, place);
   light.map =
       std::make_shared<const EnvironmentMap>(latlong_map(cube, inverse_affine(rotation_of(document, source, place))));
   if (!(light.intensity > 0)) {

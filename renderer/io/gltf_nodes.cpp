@@ -166,6 +166,12 @@ std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose
   return nodes;
 }
 
+// Where only attributes of other programs (_ID) tell.
+std::size_t unplaced_instances(const GltfDocument& document, const tinygltf::Value& attributes) {
+  const std::vector<std::string> names = attributes.Keys();
+  return names.empty() ? 0 : element_count(document, attributes.Get(names.front()).GetNumberAsInt());
+}
+
 std::vector<Mat4f> instance_transforms(const GltfDocument& document, const PlacedNode& node) {
   const auto& extensions = document.model->nodes[node.node].extensions;
   const auto extension = extensions.find("EXT_mesh_gpu_instancing");
@@ -184,6 +190,7 @@ std::vector<Mat4f> instance_transforms(const GltfDocument& document, const Place
   };
   const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                            scales = read("SCALE", 3);
+  if (count == 0) count = unplaced_instances(document, attributes);
   std::vector<Mat4f> transforms(count);
   for (std::size_t i = 0; i < count; ++i) {
     tinygltf::Node copy;

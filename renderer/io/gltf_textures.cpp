@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/shortened.h"
 #include "renderer/image/image_file.h"
 #include "renderer/io/gltf_uri.h"
 
@@ -42,7 +43,8 @@ std::string label_of(const GltfDocument& document, int image) {
   const GltfImageSource& source = document.json.images[image];
   const bool has_file_name = source.uri && !is_data_uri(*source.uri);
   const std::string name = has_file_name ? *source.uri : source.name;
-  return name.empty() ? fmt::format("images[{}]", image) : fmt::format("images[{}] \"{}\"", image, name.substr(0, 200));
+  return name.empty() ? fmt::format("images[{}]", image)
+                      : fmt::format("images[{}] \"{}\"", image, shortened(name, 200));
 }
 
 Texture decode(const GltfDocument& document, int image) {

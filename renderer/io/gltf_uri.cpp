@@ -9,6 +9,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/shortened.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -116,14 +117,14 @@ std::string make_data_uri(std::string_view mime_type, std::string_view bytes) {
 }
 
 std::string read_uri(const std::string& uri, const UriBase& base, const std::string& place) {
-  const std::string gltf = base.gltf.string(), name = uri.substr(0, 200);
+  const std::string gltf = base.gltf.string(), name = shortened(uri, 200);
   if (is_data_uri(uri)) return read_data_uri(uri, gltf, place);
   if (has_scheme(uri)) throw Error({gltf, place, fmt::format("\"{}\" is not fetched", name), "a file beside it"});
   const auto file = find_file(uri, base.gltf.parent_path());
   if (!file) throw Error({gltf, place, fmt::format("no such file: \"{}\"", name), "a file beside it"});
   if (base.external == ExternalFiles::kInFolder && !is_in_folder(*file, base.gltf.parent_path())) {
     throw Error({gltf, place, fmt::format("\"{}\" is outside its folder", name),
-                 "a file beside it, or --allow-external where the scene may open any"});
+                 "a file beside it (--allow-external lets scenes open any)"});
   }
   return read_file(*file);
 }

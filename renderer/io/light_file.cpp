@@ -12,6 +12,7 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/core/external_files.h"
+#include "renderer/core/shortened.h"
 #include "renderer/core/world_limits.h"
 #include "renderer/io/environment_file.h"
 #include "renderer/io/gltf_container.h"
@@ -122,7 +123,7 @@ std::filesystem::path read_image_path(const Entry& entry) {
   const std::filesystem::path folder = std::filesystem::path(entry.file).parent_path(), file = folder / image;
   const bool leads_out = image.is_absolute() || *image.begin() == "..";
   if (leads_out || (std::filesystem::exists(file) && !is_in_folder(file, folder))) {
-    fail(entry, "image", fmt::format("\"{}\" is outside the light file's folder", name.substr(0, 200)), expected);
+    fail(entry, "image", fmt::format("\"{}\" is outside the light file's folder", shortened(name, 200)), expected);
   }
   return file;
 }

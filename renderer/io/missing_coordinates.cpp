@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/core/shortened.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -43,7 +45,7 @@ bool lacks(const Mesh& mesh, const TextureUse& use) {
 }
 
 std::string text_of_mesh(const Mesh& mesh) {
-  return mesh.name.empty() ? "a mesh" : fmt::format("mesh \"{}\"", mesh.name.substr(0, 200));
+  return mesh.name.empty() ? "a mesh" : fmt::format("mesh \"{}\"", shortened(mesh.name, 200));
 }
 
 }  // namespace

@@ -9,14 +9,18 @@
 #include <set>
 
 #include "renderer/core/error.h"
+#include "renderer/core/shortened.h"
 #include "renderer/trace/render.h"
 
 namespace chiaro::renderer {
 namespace {
 
+constexpr std::size_t kLongestName = 200;  // bytes of a light's; OpenEXR's channels have up to 255
+
 // Layer names are unique and hold no dot, which separates layers in EXR.
 std::string light_layer_name(const Light& light, std::size_t index, std::set<std::string>& taken) {
   std::string name = name_of(light).empty() ? fmt::format("{}", index) : name_of(light);
+  name = shortened(name, kLongestName);
   for (char& c : name) {
     if (c == '.' || c == ' ') c = '_';
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "renderer/core/error.h"
 #include "renderer/trace/path_tracer.h"
 
 namespace chiaro::renderer {
@@ -22,8 +23,9 @@ TraceOptions with_wide_highlights(TraceOptions options) {
 
 // How the illumination of each of many points is sampled.
 struct Sampling {
-  Sampling(const RayTracer& tracer, const Lights& lights, const TraceOptions& options_)
-      : paths(tracer, lights, with_wide_highlights(options_)),
+  Sampling(const RayTracer& tracer, const Lights& lights, const TraceOptions& options_, const Control& control_)
+      : control(control_),
+        paths(tracer, lights, with_wide_highlights(options_)),
         options(options_),
         with_punctual(has_blended_surfaces(tracer.scene()) ||
                       lights.size() > std::max(LightSelection::kFew, kLightsPerPath * std::size_t(options.samples))),
@@ -33,6 +35,11 @@ struct Sampling {
   bool tells_error() const { return !noisy || batches > 1; }
   int samples_of(int batch) const { return options.samples / batches + (batch < options.samples % batches ? 1 : 0); }
 
+  void stop_if_asked() const {
+    if (control.stop_requested()) throw Interruption();
+  }
+
+  const Control& control;
   PathTracer paths;
   TraceOptions options;
   bool with_punctual;  // of direct light by the paths, and not apart from them
@@ -53,6 +60,7 @@ void add_batch(const Sampling& sampling, const PathTracer::Receiver& at, int bat
                PathLight& light) {
   const std::uint64_t seed = seed_of_batch(sampling.options.seed, std::uint64_t(batch) + 1);
   for (int i = 0; i < sampling.samples_of(batch); ++i) {
+    sampling.stop_if_asked();  // a point may have millions
     Sampler sampler(seed, stream, std::uint32_t(i));
     sampling.paths.add_illumination(at, sampling.with_punctual, sampler, light);
   }
@@ -119,7 +127,7 @@ std::vector<Vec3f> with_samples(const Illumination& traced, int samples, int oth
 
 Illumination trace_illumination(const RayTracer& tracer, std::span<const SurfaceSample> points, const Lights& lights,
                                 const TraceOptions& options, const Control& control) {
-  const Sampling sampling(tracer, lights, options);
+  const Sampling sampling(tracer, lights, options, control);
   Illumination result = sized(points.size(), sampling);
   for_each_point(points.size(), control, [&](std::size_t i) {
     std::vector<Vec3f> not_taken_apart;
@@ -131,7 +139,7 @@ Illumination trace_illumination(const RayTracer& tracer, std::span<const Surface
 IlluminationByLight trace_illumination_by_light(const RayTracer& tracer, std::span<const SurfaceSample> points,
                                                 const Lights& lights, const TraceOptions& options,
                                                 const Control& control) {
-  const Sampling sampling(tracer, lights, options);
+  const Sampling sampling(tracer, lights, options, control);
   IlluminationByLight result{sized(points.size(), sampling),
                              std::vector<std::vector<Vec3f>>(lights.size(), std::vector<Vec3f>(points.size()))};
   for_each_point(points.size(), control, [&](std::size_t i) {

@@ -10,7 +10,8 @@ namespace {
 TEST(CliOptionValues, NumbersAreTakenWhole) {
   EXPECT_EQ(parse_number("0.25", {}), 0.25);
   EXPECT_EQ(parse_number("-1e-3", {}), -0.001);
-  for (const char* text : {"", " 1", "1 ", "1,5", "1x", "0x10", "+1", "one"}) {
+  EXPECT_EQ(parse_number("+1.5", {}), 1.5) << "as exposures are said";
+  for (const char* text : {"", " 1", "1 ", "1,5", "1x", "0x10", "+", "+-1", "++1", "one"}) {
     EXPECT_THROW(parse_number(text, {}), UsageError) << text;
   }
 }

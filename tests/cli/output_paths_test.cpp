@@ -65,6 +65,7 @@ TEST_F(CliOutputPaths, NamesOfUsersBecomeFileNames) {
   EXPECT_EQ(file_name_of("../x y/z"), "_._x_y_z");
   EXPECT_EQ(file_name_of(""), "unnamed");
   EXPECT_EQ(file_name_of("Küche"), "Küche");
+  EXPECT_EQ(file_name_of("a" + std::string(98, 'b') + "ü"), "a" + std::string(98, 'b')) << "no half of a character";
 }
 
 TEST_F(CliOutputPaths, OutputsNeverTakeThePlaceOfInputsOrOfEachOther) {

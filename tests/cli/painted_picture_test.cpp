@@ -122,6 +122,17 @@ TEST_F(PaintedPictureTest, WhiteOfAPngIsLeftOutUnlessItIsMeant) {
   EXPECT_EQ(load_painted_picture(file, encoded).weight, (std::vector<float>{1, 1}));
 }
 
+TEST_F(PaintedPictureTest, WhiteOfAPngInANamedSpaceIsLeftOutToo) {
+  const std::string file = save("a.png", picture_of({"R", "G", "B"}, {1, 0.4F, 0.6F}), renderer::PixelType::kUint8);
+  const std::string floats = save("a.exr", picture_of({"R", "G", "B"}, {1, 0.4F, 0.6F}), renderer::PixelType::kFloat);
+  PictureEncoding encoded = encoding();
+  encoded.space = "sRGB - Texture";
+  EXPECT_EQ(load_painted_picture(file, encoded).weight, (std::vector<float>{0}));
+  EXPECT_EQ(load_painted_picture(floats, encoded).weight, (std::vector<float>{1}));
+  encoded.keep_white = true;
+  EXPECT_EQ(load_painted_picture(file, encoded).weight, (std::vector<float>{1}));
+}
+
 TEST_F(PaintedPictureTest, ANamedSpaceIsConvertedFrom) {
   const std::string file = save("a.exr", picture_of({"R", "G", "B"}, {0.5F, 0.5F, 0.5F}), renderer::PixelType::kFloat);
   PictureEncoding encoded = encoding();

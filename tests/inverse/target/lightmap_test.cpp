@@ -148,6 +148,26 @@ TEST(Lightmap, LeavesOutWhatOverlapsOrLeavesThePicture) {
   EXPECT_EQ(read.counts.used, 0U);
 }
 
+// Rounding leaves triangles that are laid out as lines a little area, by which their texels would stand for thousands
+// of square metres.
+TEST(Lightmap, LeavesOutTrianglesThatAreLinesButForRounding) {
+  Scene scene = floor_scene();
+  Mesh& mesh = scene.meshes[0];
+  const LightmapValues whole = values_of_lightmap(scene, numbered_map(16, 16));
+  for (int k = 0; k < 3; ++k) {
+    mesh.triangles.push_back(mesh.triangles[0]);
+    for (int c = 0; c < 3; ++c) mesh.triangles.back()[c] = std::uint32_t(mesh.positions.size()) + std::uint32_t(c);
+    for (int c = 0; c < 3; ++c) {
+      mesh.positions.push_back(mesh.positions[std::size_t(c)]);
+      mesh.normals.push_back(mesh.normals[std::size_t(c)]);
+      mesh.uv[0].push_back({0.1F + 0.4F * float(c), 0.5F / 16 + (c == 1 ? 1e-6F * float(k) : 0)});
+    }
+  }
+  const LightmapValues read = values_of_lightmap(scene, numbered_map(16, 16));
+  EXPECT_FLOAT_EQ(float(read.area), float(whole.area));
+  EXPECT_EQ(read.counts.used, whole.counts.used);
+}
+
 // What is linear on the surface comes back at its receivers.
 TEST(Lightmap, BringsALinearFieldToTheReceivers) {
   const Scene scene = floor_scene(4);

@@ -114,6 +114,16 @@ TEST_F(BakeFile, DoesNotGoOnWithAnother) {
   EXPECT_NO_THROW(bake_as({}, "other.exr"));
 }
 
+// The header of a bake that knows more of its grid has all that the one asked for has.
+TEST_F(BakeFile, DoesNotGoOnWithFinerCells) {
+  LightGrid finer = make_light_grid(tracer_, {.counts = {12, 11, 10}, .region = {}});
+  set_finer_cells(finer, {{1, 7}, {1, 95}});
+  Baker baker(tracer_, receivers_, finer, settings_, kAllMemory);
+  bake_to_file(baker, folder_ / "finer.exr", {}, {});
+  fs::rename(folder_ / "finer.exr", unfinished_bake(folder_ / "other.exr"));
+  EXPECT_THROW(bake_as({.shard = {}, .resume = true}, "other.exr"), Error);
+}
+
 TEST_F(BakeFile, PartsMakeTheWhole) {
   std::vector<fs::path> parts;
   for (const std::size_t i : {2, 0, 3, 1}) {

@@ -174,6 +174,19 @@ TEST_F(TransportCacheFile, ReadsScanlineFilesOfOthers) {
   }
 }
 
+TEST_F(TransportCacheFile, APartInScanlinesIsRefused) {
+  save_edited([](renderer::ImageFile&) {});
+  const renderer::ImageFile file = renderer::load_image(path());
+  std::string bytes = renderer::read_file(path());
+  const std::string window("displayWindow\0box2i\0\x10\0\0\0", 24);
+  const std::size_t at = bytes.find(window);
+  ASSERT_NE(at, std::string::npos);
+  const std::int32_t last = file.image.width;  // one receiver more than there are
+  std::memcpy(&bytes[at + window.size() + 8], &last, sizeof last);
+  renderer::write_file_atomically(path(), bytes);
+  expect_refused("a data window within the display window");
+}
+
 TEST_F(TransportCacheFile, WithoutIndirectLightIsFine) {
   TransportCache cache = make_cache(1);
   for (Vec3f& v : cache.indirect) v = {};

@@ -79,6 +79,17 @@ TEST_F(AtomicFile, NamesMayBeAsLongAsTheFileSystemHasThem) {
   EXPECT_EQ(files(), 1U);
 }
 
+TEST_F(AtomicFile, IsWrittenThroughNoLink) {
+  std::ofstream(folder_ / "victim") << "old";
+  fs::path aside;
+  write_atomically(file(), [&](const fs::path& written) { std::ofstream(aside = written) << "first"; });
+  fs::create_symlink(folder_ / "victim", aside);
+  write_file_atomically(file(), "second");
+  EXPECT_EQ(read_file(folder_ / "victim"), "old");
+  EXPECT_FALSE(fs::is_symlink(file()));
+  EXPECT_EQ(read_file(file()), "second");
+}
+
 TEST_F(AtomicFile, WritingNothingIsAnError) {
   write_file_atomically(file(), "old");
   EXPECT_THROW(write_atomically(file(), [](const fs::path&) {}), Error);

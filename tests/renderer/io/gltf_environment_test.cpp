@@ -135,6 +135,7 @@ TEST(GltfEnvironment, RefusesBrokenCubes) {
   GltfBuilder five = grey_cube(folder, 1);
   five.root["extensions"]["EXT_lights_image_based"]["lights"][0]["specularImages"][0].erase(5);
   EXPECT_NE(error(five).find("no level of six faces"), std::string::npos);
+  EXPECT_NE(error(grey_cube(folder, 1, {{"intensity", 1e25}})).find("too bright"), std::string::npos);
   GltfBuilder out_of_range = grey_cube(folder, 1);
   out_of_range.root["extensions"]["EXT_lights_image_based"]["lights"][0]["specularImages"][0][2] = 77;
   EXPECT_NE(error(out_of_range).find("77 is out of range"), std::string::npos);

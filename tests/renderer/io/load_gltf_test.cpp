@@ -270,6 +270,14 @@ TEST(GltfNodes, GpuInstancingMultipliesANode) {
   expect_near(transform_point(loaded.scene.instances[1].world_from_object, {1, 0, 0}), {12, 0, 0});
 }
 
+TEST(GltfNodes, GpuInstancingByAttributesOfOthersAlone) {
+  GltfBuilder gltf = triangle_scene();
+  const int numbers = gltf.add_accessor<float>({1, 2, 3}, 1, kFloat);
+  gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["_ID"] = numbers;
+  gltf.root["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  EXPECT_EQ(load(gltf).scene.instances.size(), 3U);
+}
+
 TEST(GltfCameras, ScaleAndMirroringLeaveTheAxesOrthonormal) {
   GltfBuilder gltf;
   gltf.root["cameras"] = ordered_json::array(
@@ -371,13 +379,12 @@ TEST(GltfMaterials, ImagesWithTheSameBytesAreOne) {
   const ordered_json one = {{"uri", "one.png"}, {"name", "again"}}, two = {{"uri", "two.png"}};
   gltf.root["images"] = ordered_json::array({{{"uri", "one.png"}}, two, one, one});
   gltf.root["textures"] = ordered_json::array({{{"source", 0}}, {{"source", 1}}, {{"source", 2}}, {{"source", 3}}});
-  gltf.root["materials"] =
-      ordered_json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
-                            {"emissiveTexture", {{"index", 3}}},
-                            {"emissiveFactor", {1, 1, 1}}},
-                           {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}},
-                            {"emissiveTexture", {{"index", 2}}},
-                            {"emissiveFactor", {1, 1, 1}}}});
+  gltf.root["materials"] = ordered_json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                                 {"emissiveTexture", {{"index", 3}}},
+                                                 {"emissiveFactor", {1, 1, 1}}},
+                                                {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}},
+                                                 {"emissiveTexture", {{"index", 2}}},
+                                                 {"emissiveFactor", {1, 1, 1}}}});
   const LoadedScene loaded = load_gltf(folder.write("scene.glb", gltf.glb()));
   ASSERT_EQ(loaded.scene.textures.size(), 2U);
   for (const int width : {1, 2}) {

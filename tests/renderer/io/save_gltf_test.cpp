@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/core/atomic_file.h"
 #include "renderer/core/vec.h"
 #include "renderer/image/image_file.h"
 #include "renderer/io/load_gltf.h"
@@ -196,6 +197,17 @@ TEST(SaveGltfLights, AMissingFileIsNamedAndNothingIsWritten) {
   const std::string message = error_of([&] { save_gltf_with_lights(scene, {}, folder / "lit.glb", {}); });
   EXPECT_NE(message.find("second.bin"), std::string::npos) << message;
   EXPECT_FALSE(std::filesystem::exists(folder / "lit.glb"));
+}
+
+// Nothing uses it, so that its scene loads.
+TEST(SaveGltfLights, AnImageThatIsMissingStaysMissing) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["images"] = {{{"uri", "gone.png"}}};
+  const auto scene = folder.write("scene.glb", gltf.glb());
+  save_gltf_with_lights(scene, some_lights(), folder / "lit.glb", {});
+  expect_same(load_gltf(folder / "lit.glb").lights, some_lights());
+  EXPECT_NE(read_file(folder / "lit.glb").find("\"uri\":\"gone.png\""), std::string::npos);
 }
 
 // All that this program reads, and what it does not, as compressing programs write it: a file is not read to be saved.

@@ -103,6 +103,24 @@ TEST(Render, DirectlyLitPlaneIsItsClosedForm) {
   }
 }
 
+// Floats know less of where a large triangle is than of where a small lamp is, and rays leave the one by more than they
+// end before the other. Form factor of a square to what is below its middle: E. M. Sparrow & R. D. Cess, Radiation Heat
+// Transfer.
+TEST(Render, LampsLightFloorsOfAnySize) {
+  const double side = 0.25, slant = std::hypot(1, side);  // of a quarter, metres; at 1 m
+  const double form_factor = 4 / kPi * side / slant * std::atan(side / slant);
+  for (const float half : {0.6F, 2.0F, 20.0F, 500.0F}) {
+    Scene scene;
+    add_mesh(scene, rectangle({-half, 0, -half}, {0, 0, 2 * half}, {2 * half, 0, 0}), lambert({1, 1, 1}), "floor");
+    add_mesh(scene, rectangle({-0.25F, 1, -0.25F}, {0.5F, 0, 0}, {0, 0, 0.5F}), lambert({0, 0, 0}, {7, 7, 7}), "lamp");
+    const RayTracer tracer(scene);
+    RenderOptions options = sized(17, 17, {.samples = 1024, .bounces = 0});
+    options.box_filter = true;
+    const Image image = render(tracer, camera_above(0.5F), {}, options).image;
+    EXPECT_NEAR(rgb(image, 8, 8).x, 7 * form_factor, 0.005 * 7 * form_factor) << half;
+  }
+}
+
 TEST(Render, LayersAddUpToTheBeauty) {
   const Scene scene = corner_with_lamp();
   const RayTracer tracer(scene);
@@ -143,6 +161,20 @@ TEST(Render, SeparateLightsAreWhatEachWouldGiveAlone) {
   }
   EXPECT_GT(b, 0);
   EXPECT_NEAR(a, b, 5 * std::sqrt(2 * variance));
+}
+
+// OpenEXR's names of channels are bytes of 255 at most.
+TEST(Render, LayersOfLightsWithLongNamesAreTheirOwn) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  Lights lights = two_lights();
+  for (Light& light : lights) std::visit([](auto& l) { l.name = std::string(199, 'a') + "ü"; }, light);
+  RenderOptions options = sized(2, 2, {.samples = 1});
+  options.layers = {"lights"};
+  const Image image = render(tracer, default_camera(scene), lights, options).image;
+  const std::string name = "light." + std::string(199, 'a');
+  EXPECT_GE(image.find_channel(name + ".R"), 0);
+  EXPECT_GE(image.find_channel(name + "_1.B"), 0);
 }
 
 TEST(Render, AlphaIsTheCoverageOfThePixel) {
