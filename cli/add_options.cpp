@@ -106,15 +106,20 @@ CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& 
 
 bool was_given(const CLI::App& command, const std::string& option) { return command.get_option(option)->count() > 0; }
 
+std::vector<std::string> given_for_nothing(const CLI::App& command, const std::vector<std::string>& names,
+                                           const std::string& why) {
+  std::vector<std::string> warnings;
+  for (const std::string& name : names) {
+    if (was_given(command, name)) warnings.push_back(fmt::format("{}: does nothing {}", name, why));
+  }
+  return warnings;
+}
+
 std::vector<std::string> idle_options(const CLI::App& command, const std::vector<std::string>& names,
                                       const std::vector<std::string>& needed) {
   const auto given = [&](const std::string& name) { return was_given(command, name); };
   if (std::any_of(needed.begin(), needed.end(), given)) return {};
-  std::vector<std::string> warnings;
-  for (const std::string& name : names) {
-    if (given(name)) warnings.push_back(fmt::format("{}: does nothing without {}", name, fmt::join(needed, " or ")));
-  }
-  return warnings;
+  return given_for_nothing(command, names, fmt::format("without {}", fmt::join(needed, " or ")));
 }
 
 void set_examples(CLI::App& command, const std::string& examples) { command.footer("Example:\n" + examples); }

@@ -69,6 +69,10 @@ CLI::Option* add_output(CLI::App& command, const OptionText& text, std::string& 
 
 bool was_given(const CLI::App& command, const std::string& option);
 
+// Of those that were given: a warning each that it does nothing `why`.
+std::vector<std::string> given_for_nothing(const CLI::App& command, const std::vector<std::string>& names,
+                                           const std::string& why);
+
 // Of options that were given and do nothing as none of `needed` was: a warning each.
 std::vector<std::string> idle_options(const CLI::App& command, const std::vector<std::string>& names,
                                       const std::vector<std::string>& needed);

@@ -80,21 +80,15 @@ void refuse_options_of_frames(const CompareCommand& options) {
   if (options.resize) refuse("--resize");
 }
 
-void warn_of_idle(const CompareCommand& options, const std::vector<std::string>& names, const std::string& where,
-                  Session& session) {
-  for (const std::string& name : names) {
-    if (was_given(*options.command, name)) session.warn(fmt::format("{}: does nothing between {}", name, where));
-  }
-}
-
 int compare_two_targets(const CompareCommand& options, Session& session) {
   refuse_options_of_frames(options);
   const inverse::Target a = inverse::load_illumination(options.a);
   const inverse::Target b = inverse::load_target(options.b);
   session.warn(a.warnings);
   session.warn(b.warnings);
-  warn_of_idle(options, {"--ocio", "--display", "--view", "--look", "--exposure", "--no-flip", "--pixels-per-degree"},
-               "two targets", session);
+  session.warn(given_for_nothing(
+      *options.command, {"--ocio", "--display", "--view", "--look", "--exposure", "--no-flip", "--pixels-per-degree"},
+      "between two targets"));
   session.stop_if_interrupted();
   const inverse::TargetComparison comparison = naming_file(options.a, [&] { return inverse::compare_targets(a, b); });
   const renderer::Vec3f place = b.receivers.positions[comparison.max_at];
@@ -112,7 +106,8 @@ int compare_two_frames(const CompareCommand& options, Session& session) {
       naming_file(options.a, [&] { return compare_frames(frames, options.frames, session.control()); });
   session.warn(frames.notes);
   if (!frames.by_view) {
-    warn_of_idle(options, {"--display", "--view", "--look", "--exposure"}, "two display pictures", session);
+    session.warn(given_for_nothing(*options.command, {"--display", "--view", "--look", "--exposure"},
+                                   "between two display pictures"));
   }
   if (const std::size_t bad = comparison.whole.image.not_finite; bad > 0) {
     session.warn(renderer::counted(bad, "pixel is not finite and left out", "pixels are not finite and left out"));

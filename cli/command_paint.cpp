@@ -79,33 +79,36 @@ void print_summary(Session& session, const PaintCommand& options, const inverse:
   }
   rows.emplace_back("receivers", fmt::format("{}", result.target.receivers.size()));
   rows.emplace_back("mean illumination", text_of_vector(mean_illumination(result.target)) + " cd/m²");
-  rows.emplace_back("written", options.output);
-  session.finish(JsonObject{{"output", options.output},
-                            {"receivers", result.target.receivers.size()},
-                            {"touched", touched},
-                            {"mean_illumination", mean_illumination(result.target)},
-                            {"seconds", session.seconds()}},
-                 aligned_rows(rows));
-}
-
-void warn_of(const PaintCommand& options, const std::vector<std::string>& names, const char* why, Session& session) {
-  for (const std::string& name : names) {
-    if (was_given(*options.command, name)) session.warn(fmt::format("{}: does nothing {}", name, why));
+  JsonObject summary{{"output", options.output},
+                     {"receivers", result.target.receivers.size()},
+                     {"touched", touched},
+                     {"mean_illumination", mean_illumination(result.target)},
+                     {"seconds", session.seconds()}};
+  if (options.picture.file.empty()) {
+    rows.emplace_back("written", options.output);
+  } else {
+    rows.emplace_back("written", fmt::format("{}, {}", options.output, options.picture.file));
+    summary.emplace_back("picture", options.picture.file);
   }
+  session.finish(summary, aligned_rows(rows));
 }
 
 // Of the light that a base is traced under. A picture shows what alpha the materials leave.
 void warn_of_idle_light(const PaintCommand& options, const char* why, Session& session) {
-  warn_of(options, {"--samples", "--bounces", "--environment", "--environment-rotation", "--environment-intensity"},
-          why, session);
-  if (options.picture.file.empty()) warn_of(options, {"--materials", "--albedo"}, why, session);
+  session.warn(given_for_nothing(
+      *options.command,
+      {"--samples", "--bounces", "--environment", "--environment-rotation", "--environment-intensity"}, why));
+  if (options.picture.file.empty()) {
+    session.warn(given_for_nothing(*options.command, {"--materials", "--albedo"}, why));
+  }
 }
 
 void warn_of_idle_options(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
   session.warn(idle_options(*options.command, {"--camera", "--width", "--height", "--hide-backs"}, {"--picture"}));
   session.warn(idle_view_options(*options.command, {"--picture"}, {"--environment"}));
   if (!options.from.empty()) {
-    warn_of(options, {"--on", "--max-edge"}, "with --from, which has receivers of its own", session);
+    session.warn(
+        given_for_nothing(*options.command, {"--on", "--max-edge"}, "with --from, which has receivers of its own"));
     warn_of_idle_light(options, "with --from, which has an illumination of its own", session);
   } else if (strokes.base == inverse::StrokeBase::kBlack) {
     warn_of_idle_light(options, "on strokes whose base is black", session);

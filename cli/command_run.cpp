@@ -211,6 +211,7 @@ int run_run(RunCommand options) {
   }
   const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
+  require_unchanged(stage);
   if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   save_found_lights(stage, result, options.folder() / kLightsFile, output_scene_options(stage, options.choices));
   const inverse::Target found = found_target(target, result);

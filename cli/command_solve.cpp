@@ -92,6 +92,7 @@ int run_solve(SolveCommand options) {
   }
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   session.stop_if_interrupted();
+  require_unchanged(stage);
   if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   save_found_lights(stage, result, options.output, output_scene_options(stage, options.choices));
   print_summary(session, options, wanted, result);

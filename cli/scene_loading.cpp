@@ -31,6 +31,12 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
   return stage;
 }
 
+void require_unchanged(const LoadedStage& stage) {
+  const std::string& file = stage.scene->path;
+  if (version_of(file) == stage.file) return;
+  throw renderer::Error({file, "", "was changed while its lights were sought", "the scene as it was"});
+}
+
 renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file,
                                const EnvironmentOptions& environment, Session& session) {
   std::vector<std::string> warnings;

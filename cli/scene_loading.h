@@ -28,6 +28,9 @@ struct LoadedStage {
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session);
 
+// Error where the file is another than was loaded: what is made of it then is not of this scene.
+void require_unchanged(const LoadedStage& stage);
+
 // The lights of the file if one is named, else those of the scene; with the environment that the options ask for, or
 // else the file's, or else the scene's, which belongs to it as emissive surfaces do.
 renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file,

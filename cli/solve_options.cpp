@@ -141,13 +141,9 @@ renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const 
 
 void save_found_lights(const LoadedStage& stage, const inverse::SolveResult& result, const std::string& output,
                        const renderer::AddLightsOptions& options) {
-  const std::string& scene = stage.scene->path;
-  if (version_of(scene) != stage.file) {
-    throw renderer::Error({scene, "", "was changed while its lights were sought", "the scene as it was"});
-  }
   renderer::Lights lights;
   for (const inverse::FoundLight& found : result.lights) lights.emplace_back(found.light);
-  renderer::save_gltf_with_lights(scene, lights, output, options);
+  renderer::save_gltf_with_lights(stage.scene->path, lights, output, options);
   renderer::save_lights(lights, beside(output, ".json"));
 }
 

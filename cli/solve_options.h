@@ -39,8 +39,7 @@ void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices,
 // How the scene with the lights found is made of the scene.
 renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const SolveChoices& choices);
 
-// LIGHTS.glb, the scene with the lights found, and LIGHTS.json beside it, the lights alone. Error where the scene's
-// file is another than was loaded.
+// LIGHTS.glb, the scene with the lights found, and LIGHTS.json beside it, the lights alone.
 void save_found_lights(const LoadedStage& stage, const inverse::SolveResult& result, const std::string& output,
                        const renderer::AddLightsOptions& options);
 

@@ -109,7 +109,8 @@ SparseTransport Baker::trace_rows(std::span<const std::size_t> receivers, const 
   return trace_receiver_rows(tracer_, gather_, receivers_.samples, receivers, options_, control);
 }
 
-// Relative L2 distance of the indirect part from path-traced values, the latter's own noise taken off.
+// Relative L2 distance of the indirect part from path-traced values, the latter's own noise taken off, and no less than
+// the standard error of that noise, below which it is not known.
 double Baker::measure_indirect_error(const renderer::Control& control) {
   const std::vector<std::size_t> lights = evenly_spread(header_.grid.positions.size(), kCheckedLights);
   const std::vector<std::size_t> chosen = evenly_spread(receivers_.size(), kCheckedReceivers);
@@ -139,7 +140,8 @@ double Baker::measure_indirect_error(const renderer::Control& control) {
       reference += squared_norm(traced);
     }
   }
-  return reference > 0 ? std::sqrt(std::max(0.0, difference - noise) / reference) : 0;
+  const double least = noise * std::sqrt(2 / double(3 * lights.size() * chosen.size()));
+  return reference > 0 ? std::sqrt(std::max(difference - noise, least) / reference) : 0;
 }
 
 void Baker::set_receivers(std::size_t first, std::size_t last) {

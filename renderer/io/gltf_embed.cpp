@@ -97,7 +97,7 @@ std::size_t append_view(ordered_json& root, std::string& binary, const std::stri
 }
 
 // Images that nothing uses may be missing, or of a kind that is not read here; the scene refers to them as before.
-std::optional<std::string> image_bytes(const ordered_json& image, const GltfEmbedding& embedding) {
+std::optional<std::string> bytes_of_image(const ordered_json& image, const GltfEmbedding& embedding) {
   try {
     return bytes_of(image, embedding, "images");
   } catch (const Error&) {
@@ -107,7 +107,7 @@ std::optional<std::string> image_bytes(const ordered_json& image, const GltfEmbe
 
 void embed_image(ordered_json& root, std::size_t index, std::optional<std::string>& binary,
                  const GltfEmbedding& embedding) {
-  const std::optional<std::string> found = image_bytes(root["images"][index], embedding);
+  const std::optional<std::string> found = bytes_of_image(root["images"][index], embedding);
   if (!found) return;
   const std::string& bytes = *found;
   const std::string mime_type = mime_type_of(root["images"][index], bytes);

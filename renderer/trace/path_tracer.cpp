@@ -106,7 +106,7 @@ Vec3f PathTracer::light_along(const Ray& ray, const Media* media) const {
 
 Vec3f PathTracer::light_through(const Vertex& v, const LightSample& from, std::uint32_t alpha_seed) const {
   Ray ray{v.ray_origin(from.to_light), from.to_light};
-  if (from.reach != kInfinity) {  // it ends there wherever it begins: what has a surface may be as close to its end
+  if (from.reach != kInfinity) {  // from the vertex, and not from where the ray begins
     ray.direction = v.position + from.reach * from.to_light - ray.origin, ray.far = 1;
   }
   ray.alpha_seed = alpha_seed;

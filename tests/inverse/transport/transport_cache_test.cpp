@@ -1,5 +1,6 @@
 #include "inverse/transport/transport_cache.h"
 
+#include <cstring>
 #include <fstream>
 #include <limits>
 
