@@ -97,6 +97,12 @@ std::string fingerprint(const Scene& scene) {
   return f.text();
 }
 
+std::vector<int> instances_per_mesh(const Scene& scene) {
+  std::vector<int> count(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++count[instance.mesh];
+  return count;
+}
+
 std::size_t drawn_triangle_count(const Scene& scene) {
   std::size_t count = 0;
   for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();

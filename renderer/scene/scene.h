@@ -97,5 +97,6 @@ bool any_drawn_material(const Scene& scene, const Predicate& is) {
 }
 
 std::size_t drawn_triangle_count(const Scene& scene);  // instances counted each
+std::vector<int> instances_per_mesh(const Scene& scene);
 
 }  // namespace chiaro::renderer

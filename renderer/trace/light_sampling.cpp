@@ -113,11 +113,14 @@ float PunctualEmission::pdf(std::size_t light, Vec3f direction) const {
 
 EmissiveTriangles::EmissiveTriangles(const Scene& scene) : scene_(scene), emitter_(scene.instances.size()) {
   std::vector<LightBounds> bounds;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) add_instance(i, bounds);
+  const std::vector<int> uses = instances_per_mesh(scene);
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    add_instance(i, uses[scene.instances[i].mesh] > 1, bounds);
+  }
   tree_ = LightTree(bounds);
 }
 
-void EmissiveTriangles::add_instance(std::uint32_t index, std::vector<LightBounds>& bounds) {
+void EmissiveTriangles::add_instance(std::uint32_t index, bool instanced, std::vector<LightBounds>& bounds) {
   const Instance& instance = scene_.instances[index];
   const Mesh& mesh = scene_.meshes[instance.mesh];
   if (max_component(scene_.materials[mesh.material].emission) <= 0) return;
@@ -137,8 +140,8 @@ void EmissiveTriangles::add_instance(std::uint32_t index, std::vector<LightBound
     b.two_sided = true;
     b.intensity = area * mean_emission(scene_, mesh, t);
     emitter_[index][t] = std::uint32_t(triangles_.size());
-    const float largest_coordinate = max_component(max(max(abs(p[0]), abs(p[1])), abs(p[2])));
-    triangles_.push_back({index, t, p[0], p[1], p[2], b.axis, area, largest_coordinate});
+    triangles_.push_back(
+        {index, t, p[0], p[1], p[2], b.axis, area, triangle_extent(mesh, t, instance.world_from_object, instanced)});
     bounds.push_back(b);
   }
 }
@@ -159,7 +162,7 @@ EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, Vec3f normal, d
   const float cosine = std::abs(dot(s.to_light, e.normal));
   if (!(cosine > 1e-7F)) return {};
   // Where floats can tell that the ray has not yet met the triangle.
-  const float rounding = surface_rounding(e.largest_coordinate, s.distance);
+  const float rounding = surface_rounding(e.extent.largest_coordinate, e.extent.circle_radius + s.distance);
   s.reach = s.distance - std::min(2 * rounding / cosine, 0.5F * s.distance);
   s.radiance = covered_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
   s.pdf = found->probability / e.area * d2 / cosine;

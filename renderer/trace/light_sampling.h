@@ -8,6 +8,7 @@
 #include "renderer/scene/light.h"
 #include "renderer/trace/light_tree.h"
 #include "renderer/trace/ray_tracer.h"
+#include "renderer/trace/triangle_extent.h"
 
 namespace chiaro::renderer {
 
@@ -85,9 +86,9 @@ class EmissiveTriangles {
     Vec3f p0, p1, p2;  // world
     Vec3f normal;      // unit
     float area;        // m²
-    float largest_coordinate;
+    TriangleExtent extent;
   };
-  void add_instance(std::uint32_t instance, std::vector<LightBounds>& bounds);
+  void add_instance(std::uint32_t instance, bool instanced, std::vector<LightBounds>& bounds);
 
   const Scene& scene_;
   std::vector<Emitter> triangles_;

@@ -147,12 +147,6 @@ bool needs_filter(const Material& material) {
   return material.alpha_mode != AlphaMode::kOpaque || material.unlit || material.hidden_back || transmits;
 }
 
-std::vector<int> instances_per_mesh(const Scene& scene) {
-  std::vector<int> count(scene.meshes.size(), 0);
-  for (const Instance& instance : scene.instances) ++count[instance.mesh];
-  return count;
-}
-
 RTCRay make_ray(const Ray& ray) {
   RTCRay r{};
   r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;

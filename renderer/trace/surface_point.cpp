@@ -2,6 +2,7 @@
 
 #include "renderer/trace/fresnel.h"
 #include "renderer/trace/texture_lookup.h"
+#include "renderer/trace/triangle_extent.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -187,31 +188,6 @@ Corners world_corners(const Locus& at, const Mat4f& world_from_object) {
   return world;
 }
 
-float largest_coordinate(const Corners& corners) {
-  return max_component(max(max(abs(corners[0]), abs(corners[1])), abs(corners[2])));
-}
-
-// Of the sums that make a corner's world coordinates, and a ray's object coordinates: the largest term may be far
-// larger than the sum.
-float largest_term(const Locus& at, const Mat4f& m) {
-  float largest = 0;
-  for (const std::uint32_t v : at.triangle) {
-    const Vec3f p = abs(at.mesh.positions[v]);
-    largest = std::max(largest, max_component(p.x * abs(m.column(0)) + p.y * abs(m.column(1)) + p.z * abs(m.column(2)) +
-                                              abs(m.column(3))));
-  }
-  return largest;
-}
-
-// Of the circle through the corners, which is large where they lie almost on a line; then at most kMost edges.
-float circle_radius(const Corners& corners) {
-  constexpr float kMost = 16;
-  const Vec3f ab = corners[1] - corners[0], bc = corners[2] - corners[1], ca = corners[0] - corners[2];
-  const float a = length(bc), b = length(ca), c = length(ab), most = kMost * std::max({a, b, c});
-  const float radius = a * b * c / (2 * length(cross(ab, ca)));
-  return radius < most ? radius : most;
-}
-
 float triangle_area(const Corners& corners) {
   return 0.5F * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
 }
@@ -293,9 +269,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const Corners corners = world_corners(at, instance.world_from_object);
   at.footprint = cone_footprint(ray, hit.distance, corners);
   point.position = corners[0] + hit.u * (corners[1] - corners[0]) + hit.v * (corners[2] - corners[0]);
-  point.rounding =
-      surface_rounding(hit.instanced ? largest_term(at, instance.world_from_object) : largest_coordinate(corners),
-                       circle_radius(corners));
+  const TriangleExtent extent = triangle_extent(mesh, hit.triangle, instance.world_from_object, hit.instanced);
+  point.rounding = surface_rounding(extent.largest_coordinate, extent.circle_radius);
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;
   point.geometric_normal = (point.front ? 1.0F : -1.0F) * hit.geometric_normal;
   const Vec3f to_viewer = -normalize(ray.direction);

@@ -121,6 +121,51 @@ TEST(Render, LampsLightFloorsOfAnySize) {
   }
 }
 
+// What rays meet in the coordinates of its object, and what lies almost on a line, is less certain than its place
+// tells.
+TEST(Render, LampsAreAsBrightWhateverTheirTriangles) {
+  const auto seen = [](const Scene& scene) {
+    const RayTracer tracer(scene);
+    RenderOptions options = sized(1, 1, {.samples = 16384, .bounces = 0});
+    options.box_filter = true;
+    return double(rgb(render(tracer, camera_above(0.5F), {}, options).image, 0, 0).x);
+  };
+  Scene floor;
+  add_mesh(floor, rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), lambert({1, 1, 1}), "floor");
+  Scene near = floor, far = floor;
+  add_mesh(near, rectangle({-0.25F, 1, -0.25F}, {0.5F, 0, 0}, {0, 0, 0.5F}), lambert({0, 0, 0}, {7, 7, 7}), "lamp");
+  const Vec3f away{1000, 800, -500};
+  add_mesh(far, rectangle(away + Vec3f{-0.25F, 1, -0.25F}, {0.5F, 0, 0}, {0, 0, 0.5F}), lambert({0, 0, 0}, {7, 7, 7}),
+           "lamp");
+  far.instances.back().world_from_object = make_transform(-1 * away, {0, 0, 0, 1}, {1, 1, 1});
+  far.instances.push_back(far.instances.back());
+  far.instances.back().world_from_object = make_transform({0, 100, 0}, {0, 0, 0, 1}, {1, 1, 1});
+  EXPECT_NEAR(seen(far) / seen(near), 1, 0.01);
+
+  // A needle against the same one in parts.
+  const auto with_needle = [&](int parts, float angle) {
+    Scene scene = floor;
+    const float sine = std::sin(angle) / std::sqrt(14.0F);
+    const Mat4f turn = make_transform({0, 1, 0}, {sine, 2 * sine, 3 * sine, std::cos(angle)}, {1, 1, 1});
+    Mesh needle;
+    const Vec3f apex{0.3F, 0.01F, 0};
+    for (int i = 0; i < parts; ++i) {
+      const auto along = [&](int k) { return Vec3f{-5 + 10 * float(k) / float(parts), 0, 0}; };
+      const auto first = std::uint32_t(needle.positions.size());
+      for (const Vec3f p : {along(i), along(i + 1), apex}) {
+        needle.positions.push_back(transform_point(turn, p));
+        needle.normals.push_back(normalize(transform_direction(turn, {0, 0, 1})));
+      }
+      needle.triangles.push_back({first, first + 1, first + 2});
+    }
+    add_mesh(scene, needle, lambert({0, 0, 0}, {700, 700, 700}), "needle");
+    return scene;
+  };
+  for (const float angle : {0.2F, 0.5F, 0.9F, 1.4F, 2.0F, 2.7F}) {
+    EXPECT_NEAR(seen(with_needle(1, angle)) / seen(with_needle(100, angle)), 1, 0.03) << angle;
+  }
+}
+
 TEST(Render, LayersAddUpToTheBeauty) {
   const Scene scene = corner_with_lamp();
   const RayTracer tracer(scene);

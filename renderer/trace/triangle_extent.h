@@ -1,0 +1,19 @@
+#pragma once
+// How large a triangle is in the numbers that rays meet it by: what its rounding grows with.
+
+#include <cstdint>
+
+#include "renderer/scene/scene.h"
+
+namespace chiaro::renderer {
+
+struct TriangleExtent {
+  float largest_coordinate = 0;  // metres; of all terms of the sums that place it
+  float circle_radius = 0;       // metres; of the circle through its corners, up to 16 edges
+};
+
+// instanced: rays meet it in object space (Hit), as those of meshes that are drawn more than once.
+TriangleExtent triangle_extent(const Mesh& mesh, std::uint32_t triangle, const Mat4f& world_from_object,
+                               bool instanced);
+
+}  // namespace chiaro::renderer
