@@ -79,10 +79,9 @@ inverse::BakeSummary bake_saying_what_stays(const BakeCommand& options, inverse:
 
 // A cache is of unity lights alone.
 void warn_of_idle_options(const BakeCommand& options, Session& session) {
-  for (const char* name : {"--environment", "--environment-rotation", "--environment-intensity"}) {
-    if (!was_given(*options.command, name)) continue;
-    session.warn(fmt::format("{}: does nothing in a bake, which is the same under any environment", name));
-  }
+  session.warn(given_for_nothing(*options.command,
+                                 {"--environment", "--environment-rotation", "--environment-intensity"},
+                                 "in a bake, which is the same under any environment"));
 }
 
 int run_bake(const BakeCommand& options) {

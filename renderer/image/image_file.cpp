@@ -7,6 +7,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -88,7 +89,12 @@ struct OpenImage {
   SamplesHeader header{};
   std::unique_ptr<OIIO::Filesystem::IOMemReader> reader{};
   std::unique_ptr<OIIO::ImageInput> input{};
+  std::optional<RadianceHeader> radiance{};  // of a Radiance picture
 };
+
+bool has_format(const OIIO::ImageInput& input, const char* format) {
+  return std::strcmp(input.format_name(), format) == 0;
+}
 
 // Their header is known to be right before OpenImageIO sees it, and so are the bytes.
 OpenImage open(const std::filesystem::path& path) {
@@ -115,6 +121,7 @@ OpenImage open(const std::filesystem::path& path) {
     const std::string reason = first_line(OIIO::geterror());
     throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), ""});
   }
+  if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);
   return image;
 }
 
@@ -128,12 +135,8 @@ void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
                "a flat image of a sensible size"});
 }
 
-bool has_format(const OIIO::ImageInput& input, const char* format) {
-  return std::strcmp(input.format_name(), format) == 0;
-}
-
 // OpenEXR alone has a data window within a display window. What other formats have is where a page or a layer lay.
-OIIO::ImageSpec spec_of(const OIIO::ImageInput& input) {
+OIIO::ImageSpec picture_spec(const OIIO::ImageInput& input) {
   OIIO::ImageSpec spec = input.spec();
   if (has_format(input, "openexr")) return spec;
   spec.x = spec.y = spec.full_x = spec.full_y = 0;
@@ -169,8 +172,9 @@ bool has_associated_alpha(const OIIO::ImageSpec& spec, std::string_view format) 
   return format == "openexr" || spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
-ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& path) {
-  const OIIO::ImageSpec spec = spec_of(input);
+ImageFile header_of(const OpenImage& open, const std::filesystem::path& path) {
+  const OIIO::ImageInput& input = *open.input;
+  const OIIO::ImageSpec spec = picture_spec(input);
   check_size(spec, path.string());
   check_window(spec, path.string());
   ImageFile file;
@@ -183,9 +187,9 @@ ImageFile header_of(const OIIO::ImageInput& input, const std::filesystem::path& 
   file.srgb_curve =
       file.whole_numbers && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
   for (const OIIO::ParamValue& value : spec.extra_attribs) append_attribute(file.attributes, value, exr);
-  if (!has_format(input, "hdr")) return file;
-  const RadianceHeader radiance = read_radiance_header(path);
-  if (radiance.chromaticities) file.attributes.emplace_back("chromaticities", *radiance.chromaticities);
+  if (open.radiance && open.radiance->chromaticities) {
+    file.attributes.emplace_back("chromaticities", *open.radiance->chromaticities);
+  }
   return file;
 }
 
@@ -308,21 +312,20 @@ Image in_window(const Image& part, const OIIO::ImageSpec& spec) {
 }
 
 // What the pixels were before they were multiplied for display.
-void undo_exposure(const std::filesystem::path& path, Image& image) {
-  const Vec3f multiplied = read_radiance_header(path).multiplied;
+void divide_by(Vec3f multiplied, Image& image) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] /= multiplied[int(i % 3)];
 }
 
 ImageFile read_image(const std::filesystem::path& path) {
   OpenImage opened = open(path);
-  ImageFile file = header_of(*opened.input, path);
+  ImageFile file = header_of(opened, path);
   if (!may_hold(std::filesystem::file_size(path), opened.input->spec().image_bytes(true))) {
     throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
   }
-  const OIIO::ImageSpec spec = spec_of(*opened.input);
+  const OIIO::ImageSpec spec = picture_spec(*opened.input);
   Image image = make_image(spec.width, spec.height, std::move(file.image.channel_names));
   read_pixels(opened, path.string(), image);
-  if (has_format(*opened.input, "hdr")) undo_exposure(path, image);
+  if (opened.radiance) divide_by(opened.radiance->multiplied, image);
   file.image = upright(file.part ? in_window(image, spec) : std::move(image), orientation_of(*opened.input));
   return file;
 }
@@ -330,7 +333,7 @@ ImageFile read_image(const std::filesystem::path& path) {
 }  // namespace
 
 ImageFile load_image_header(const std::filesystem::path& path) {
-  return read_through_library(path.string(), [&] { return header_of(*open(path).input, path); });
+  return read_through_library(path.string(), [&] { return header_of(open(path), path); });
 }
 
 ImageFile load_image(const std::filesystem::path& path) {

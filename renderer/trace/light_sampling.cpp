@@ -126,9 +126,9 @@ void EmissiveTriangles::add_instance(std::uint32_t index, bool instanced, std::v
   if (max_component(scene_.materials[mesh.material].emission) <= 0) return;
   emitter_[index].assign(mesh.triangles.size(), kNoEmitter);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    Vec3f p[3];
+    std::array<Vec3f, 3> p;
     LightBounds b;
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       p[k] = transform_point(instance.world_from_object, mesh.positions[mesh.triangles[t][k]]);
       b.box.extend(p[k]);
     }
@@ -141,7 +141,7 @@ void EmissiveTriangles::add_instance(std::uint32_t index, bool instanced, std::v
     b.intensity = area * mean_emission(scene_, mesh, t);
     emitter_[index][t] = std::uint32_t(triangles_.size());
     triangles_.push_back(
-        {index, t, p[0], p[1], p[2], b.axis, area, triangle_extent(mesh, t, instance.world_from_object, instanced)});
+        {index, t, p[0], p[1], p[2], b.axis, area, triangle_extent(p, mesh, t, instance.world_from_object, instanced)});
     bounds.push_back(b);
   }
 }

@@ -269,7 +269,7 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const Corners corners = world_corners(at, instance.world_from_object);
   at.footprint = cone_footprint(ray, hit.distance, corners);
   point.position = corners[0] + hit.u * (corners[1] - corners[0]) + hit.v * (corners[2] - corners[0]);
-  const TriangleExtent extent = triangle_extent(mesh, hit.triangle, instance.world_from_object, hit.instanced);
+  const TriangleExtent extent = triangle_extent(corners, mesh, hit.triangle, instance.world_from_object, hit.instanced);
   point.rounding = surface_rounding(extent.largest_coordinate, extent.circle_radius);
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;
   point.geometric_normal = (point.front ? 1.0F : -1.0F) * hit.geometric_normal;

@@ -1,7 +1,6 @@
 #include "renderer/trace/triangle_extent.h"
 
 #include <algorithm>
-#include <array>
 
 namespace chiaro::renderer {
 namespace {
@@ -14,10 +13,10 @@ float largest_coordinate(const Corners& corners) {
 
 // Of the sums that make corners' world coordinates, and a ray's object coordinates: the largest term may be far larger
 // than the sum.
-float largest_term(const Corners& object, const Mat4f& m) {
+float largest_term(const Mesh& mesh, std::uint32_t triangle, const Mat4f& m) {
   float largest = 0;
-  for (const Vec3f corner : object) {
-    const Vec3f p = abs(corner);
+  for (const std::uint32_t v : mesh.triangles[triangle]) {
+    const Vec3f p = abs(mesh.positions[v]);
     largest = std::max(largest, max_component(p.x * abs(m.column(0)) + p.y * abs(m.column(1)) + p.z * abs(m.column(2)) +
                                               abs(m.column(3))));
   }
@@ -35,14 +34,10 @@ float circle_radius(const Corners& corners) {
 
 }  // namespace
 
-TriangleExtent triangle_extent(const Mesh& mesh, std::uint32_t triangle, const Mat4f& world_from_object,
-                               bool instanced) {
-  Corners object, world;
-  for (int k = 0; k < 3; ++k) {
-    object[std::size_t(k)] = mesh.positions[mesh.triangles[triangle][k]];
-    world[std::size_t(k)] = transform_point(world_from_object, object[std::size_t(k)]);
-  }
-  return {instanced ? largest_term(object, world_from_object) : largest_coordinate(world), circle_radius(world)};
+TriangleExtent triangle_extent(const Corners& corners, const Mesh& mesh, std::uint32_t triangle,
+                               const Mat4f& world_from_object, bool instanced) {
+  return {instanced ? largest_term(mesh, triangle, world_from_object) : largest_coordinate(corners),
+          circle_radius(corners)};
 }
 
 }  // namespace chiaro::renderer

@@ -1,6 +1,7 @@
 #pragma once
 // How large a triangle is in the numbers that rays meet it by: what its rounding grows with.
 
+#include <array>
 #include <cstdint>
 
 #include "renderer/scene/scene.h"
@@ -12,8 +13,9 @@ struct TriangleExtent {
   float circle_radius = 0;       // metres; of the circle through its corners, up to 16 edges
 };
 
-// instanced: rays meet it in object space (Hit), as those of meshes that are drawn more than once.
-TriangleExtent triangle_extent(const Mesh& mesh, std::uint32_t triangle, const Mat4f& world_from_object,
-                               bool instanced);
+// corners: in the world. instanced: rays meet it in object space (Hit), as those of meshes that are drawn more than
+// once.
+TriangleExtent triangle_extent(const std::array<Vec3f, 3>& corners, const Mesh& mesh, std::uint32_t triangle,
+                               const Mat4f& world_from_object, bool instanced);
 
 }  // namespace chiaro::renderer
