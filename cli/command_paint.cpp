@@ -38,7 +38,7 @@ inverse::Target make_base(const PaintCommand& options, const LoadedStage& stage,
       choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   if (!options.from.empty()) {
     inverse::Target base = inverse::load_target(options.from);
-    require_same_scene(*stage.tracer, base.receivers, options.from);
+    place_on_scene(*stage.tracer, base.receivers, options.from);
     session.warn(base.warnings);
     return base;
   }

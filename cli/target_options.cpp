@@ -180,7 +180,7 @@ class TargetLoading {
  private:
   inverse::Target from_file() const {
     inverse::Target target = inverse::load_target(choices_.file, choices_.scale);
-    require_same_scene(*stage_.tracer, target.receivers, choices_.file);
+    place_on_scene(*stage_.tracer, target.receivers, choices_.file);
     session_.warn(target.warnings);
     if (choices_.scale != 1 && !target.has_scaled_colors) {
       session_.warn(

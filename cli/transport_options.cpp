@@ -6,6 +6,7 @@
 #include "cli/add_options.h"
 #include "cli/scene_options.h"
 #include "inverse/transport/allowed_places.h"
+#include "inverse/transport/receiver_samples.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -76,23 +77,28 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
 
 inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options,
                                     Session& session) {
-  if (options.on.empty()) return inverse::make_receivers(tracer.scene(), {.max_edge = options.max_edge});
+  if (options.on.empty()) {
+    inverse::Receivers receivers = inverse::make_receivers(tracer.scene(), {.max_edge = options.max_edge});
+    inverse::place_samples_on(tracer, receivers);
+    return receivers;
+  }
   const renderer::VertexMesh mesh = renderer::load_vertex_mesh(options.on);
   inverse::Receivers receivers = inverse::receivers_from_mesh(mesh);
-  require_same_scene(tracer, receivers, options.on);
+  place_on_scene(tracer, receivers, options.on);
   for (const std::string& warning : mesh.warnings) session.warn(fmt::format("{}: {}", options.on, warning));
   return receivers;
 }
 
-void require_same_scene(const renderer::RayTracer& tracer, const inverse::Receivers& receivers,
-                        const std::string& file) {
+void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& receivers, const std::string& file) {
   if (receivers.size() == 0) throw renderer::Error({file, "", "has no vertices", "receivers"});
   const double fraction = inverse::fraction_on_surface(tracer, receivers);
-  if (fraction >= kLeastFractionOnSurface) return;
-  throw renderer::Error(
-      {file, "receivers",
-       fmt::format("belong to another scene: {:.0f} % lie on the surfaces of {}", 100 * fraction, tracer.scene().path),
-       "points on the scene's surfaces"});
+  if (fraction < kLeastFractionOnSurface) {
+    throw renderer::Error({file, "receivers",
+                           fmt::format("belong to another scene: {:.0f} % lie on the surfaces of {}", 100 * fraction,
+                                       tracer.scene().path),
+                           "points on the scene's surfaces"});
+  }
+  inverse::place_samples_on(tracer, receivers);
 }
 
 }  // namespace chiaro::cli

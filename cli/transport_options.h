@@ -54,8 +54,7 @@ void add_max_edge_option(CLI::App& command, float& max_edge);
 // to another scene.
 inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options, Session& session);
 
-// Error where fewer than half of the receivers of `file` lie on the scene's surface.
-void require_same_scene(const renderer::RayTracer& tracer, const inverse::Receivers& receivers,
-                        const std::string& file);
+// Places the samples of the receivers of `file` on the scene's surfaces. Error where fewer than half lie on any.
+void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& receivers, const std::string& file);
 
 }  // namespace chiaro::cli

@@ -179,12 +179,11 @@ std::vector<const PlacedValue*> nearest_values(const std::vector<PlacedValue>& v
 
 renderer::SurfaceSample sample_at(const Receivers& receivers, const ReceiverWeights& at, const SurfaceValue& value) {
   Vec3f normal;
-  float radius = 0;
+  float rounding = 0;
   for (int k = 0; k < 3; ++k) {
     normal += at.weights[k] * receivers.normals[at.receivers[k]];
-    radius = std::max(radius, length(receivers.positions[at.receivers[k]] - value.position));
+    rounding = std::max(rounding, receivers.samples[at.receivers[k]].stand_off);
   }
-  const float rounding = renderer::surface_rounding(max_component(abs(value.position)), radius);
   return {renderer::offset_point(value.position, value.normal, rounding),
           length(normal) > 0 ? normalize(normal) : value.normal, rounding};
 }

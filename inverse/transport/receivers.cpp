@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "inverse/transport/receiver_samples.h"
 #include "inverse/transport/split_edges.h"
 #include "renderer/core/error.h"
 #include "renderer/core/fingerprint.h"
@@ -13,7 +14,6 @@
 namespace chiaro::inverse {
 namespace {
 
-using renderer::Box3f;
 using renderer::Triangle;
 
 constexpr double kDefaultCount = 30000;  // receivers aimed at by default …
@@ -21,10 +21,6 @@ constexpr double kDefaultGrowth = 1.3;   // … or this many times the scene's o
 constexpr double kLeastOfWanted = 2.0 / 3, kMostOfWanted = 5.0 / 3;
 constexpr float kShortestEdge = 1e-5F;  // of the scene's longest one
 constexpr double kMostReceivers = 3e7;
-constexpr float kNudge = 2e-5F;        // of the receivers' diagonal
-constexpr float kLeastNudge = 2;       // in what rounding may take a point off its face
-constexpr float kLongestNudge = 0.1F;  // of the way to the centroid of the face
-
 SurfaceMesh world_mesh(const renderer::Scene& scene, const renderer::Instance& instance) {
   const renderer::Mesh& mesh = scene.meshes[instance.mesh];
   SurfaceMesh out;
@@ -136,62 +132,6 @@ void check_count(const renderer::Scene& scene, const std::vector<SurfaceMesh>& m
                          "a longer --max-edge"});
 }
 
-std::vector<std::uint32_t> largest_face_per_vertex(const Receivers& r) {
-  std::vector<std::uint32_t> face(r.size(), ~0U);
-  std::vector<float> area(r.size(), -1);
-  for (std::uint32_t t = 0; t < r.triangles.size(); ++t) {
-    const auto& [a, b, c] = r.triangles[t];
-    const float twice = length(cross(r.positions[b] - r.positions[a], r.positions[c] - r.positions[a]));
-    for (const std::uint32_t v : r.triangles[t]) {
-      if (twice > area[v]) area[v] = twice, face[v] = t;
-    }
-  }
-  return face;
-}
-
-Box3f bounds(std::span<const Vec3f> positions) {
-  Box3f box;
-  for (const Vec3f& p : positions) box.extend(p);
-  return box;
-}
-
-// Any triangle of the scene that a part was split from lies within the part's bounds.
-float part_rounding(const Receivers& r, const Receivers::Part& part) {
-  const Box3f box = bounds(std::span(r.positions).subspan(part.first_receiver, part.receiver_count));
-  return renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
-}
-
-// Zero for a triangle without area.
-Vec3f face_normal(const Receivers& r, const Triangle& t) {
-  const Vec3f area = cross(r.positions[t[1]] - r.positions[t[0]], r.positions[t[2]] - r.positions[t[0]]);
-  return length_squared(area) > 0 ? normalize(area) : Vec3f{};
-}
-
-// Off the edges of the vertex's largest face, and off the face to the side of the vertex's normal.
-Vec3f sample_position(const Receivers& r, std::size_t i, const Triangle& face, float nudge, float rounding) {
-  const Vec3f vertex = r.positions[i];
-  const Vec3f inward = (r.positions[face[0]] + r.positions[face[1]] + r.positions[face[2]]) / 3 - vertex;
-  const float distance = length(inward);
-  const Vec3f inside = distance > 0 ? vertex + std::min(kLongestNudge, nudge / distance) * inward : vertex;
-  const Vec3f normal = face_normal(r, face);
-  return inside + std::copysign(rounding, dot(normal, r.normals[i])) * normal;
-}
-
-void place_samples(Receivers& r) {
-  const float nudge = kNudge * bounds(r.positions).diagonal();
-  const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
-  r.samples.resize(r.size());
-  for (const Receivers::Part& part : r.parts) {
-    const float rounding = part_rounding(r, part), off_edges = std::max(nudge, kLeastNudge * rounding);
-    for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
-      const bool has_face = face[i] != ~0U;
-      const Vec3f position =
-          has_face ? sample_position(r, i, r.triangles[face[i]], off_edges, rounding) : r.positions[i];
-      r.samples[i] = {position, r.normals[i], has_face ? rounding : 0};
-    }
-  }
-}
-
 void append(Receivers& r, const std::string& name, std::span<const Vec3f> positions, std::span<const Vec3f> normals,
             std::span<const Triangle> triangles) {
   const auto base = std::uint32_t(r.size());
@@ -294,7 +234,7 @@ double fraction_on_surface(const renderer::RayTracer& tracer, const Receivers& r
   constexpr std::size_t kMostProbes = 2000;
   // Far from the origin samples stand off their surface, and surfaces off their places, by what rounding calls for.
   constexpr float kRoundings = 4;
-  const Box3f& box = tracer.bounds();
+  const renderer::Box3f& box = tracer.bounds();
   const float rounding = renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
   const float reach = std::max(1e-3F * box.diagonal(), kRoundings * rounding);
   const std::size_t stride = std::max<std::size_t>(1, receivers.size() / kMostProbes);

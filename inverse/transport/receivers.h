@@ -24,9 +24,7 @@ struct Receivers {
   std::vector<Vec3f> normals;                 // unit
   std::vector<renderer::Triangle> triangles;  // over positions
   std::vector<Part> parts;
-  // Where illumination is sampled: just inside one of the vertex's faces and in front of it, so that receivers on
-  // edges, in corners and under furniture neither leak nor blacken.
-  std::vector<renderer::SurfaceSample> samples;
+  std::vector<renderer::SurfaceSample> samples;  // where illumination is sampled: receiver_samples.h
 
   std::size_t size() const { return positions.size(); }
 };

@@ -5,17 +5,23 @@
 #include <cstdint>
 
 #include "renderer/scene/scene.h"
+#include "renderer/trace/ray_tracer.h"
 
 namespace chiaro::renderer {
 
 struct TriangleExtent {
   float largest_coordinate = 0;  // metres; of all terms of the sums that place it
-  float circle_radius = 0;       // metres; of the circle through its corners, up to 16 edges
+  float circle_radius = 0;       // metres; of the circle through its corners, up to 16 of its longest edge
 };
 
 // corners: in the world. instanced: rays meet it in object space (Hit), as those of meshes that are drawn more than
 // once.
 TriangleExtent triangle_extent(const std::array<Vec3f, 3>& corners, const Mesh& mesh, std::uint32_t triangle,
                                const Mat4f& world_from_object, bool instanced);
+// Of the triangle that a ray met.
+TriangleExtent triangle_extent(const Scene& scene, const Hit& hit);
+
+// Of no triangle of the scene is either larger.
+TriangleExtent largest_extent(const Scene& scene);
 
 }  // namespace chiaro::renderer

@@ -57,7 +57,11 @@ TEST_F(ResponseOfARoom, TheNearestGridLightsStandInForPlacesFarFromAll) {
   for (const Vector3d& place : response.places_near_grid_lights()) EXPECT_TRUE(places.contains(place));
 }
 
+// Exact values have steps where a light comes so close to a gather point that its whole cell counts: there the two
+// one-sided differences are not alike.
 TEST_F(ResponseOfARoom, GradientEqualsCentralDifferences) {
+  constexpr double kStep = 0.02;  // of the gradient
+  int smooth = 0, all = 0;
   for (std::uint32_t k = 0; k < 12; ++k) {
     const Vector3d x = random_position(k, grid_.region);
     for (const auto evaluation : {Evaluation::kTracedVisibility, Evaluation::kInterpolated, Evaluation::kExact}) {
@@ -69,11 +73,16 @@ TEST_F(ResponseOfARoom, GradientEqualsCentralDifferences) {
         const Column plus = response_.evaluate_with_gradient(Vector3d(x + step * Vector3d::Unit(a)), evaluation).value;
         const Column minus = response_.evaluate_with_gradient(Vector3d(x - step * Vector3d::Unit(a)), evaluation).value;
         const Column difference = (plus - minus) / (2 * step);
-        EXPECT_LT((difference - at.gradient[std::size_t(a)]).norm(), most * at.gradient[std::size_t(a)].norm())
+        const double scale = at.gradient[std::size_t(a)].norm();
+        ++all;
+        if (gathered && (plus - 2 * at.value + minus).norm() / step > kStep * scale) continue;
+        ++smooth;
+        EXPECT_LT((difference - at.gradient[std::size_t(a)]).norm(), most * scale)
             << "position " << k << ", axis " << a;
       }
     }
   }
+  EXPECT_GT(smooth, 0.9 * all);
 }
 
 TEST_F(ResponseOfARoom, EveryWayToEvaluateAgrees) {
