@@ -32,6 +32,7 @@ using renderer::Error;
 
 constexpr int kMostRegions = 4;                 // one larger than the other
 constexpr float kHardlySeen = 1.0F / 16;        // of a region's longest side
+constexpr double kUnlit = 1e-6;                 // of the target's squared illumination
 constexpr std::size_t kMoreVertices = 3;        // times as many, where they misled the search
 constexpr double kOnSurface = 0.5;              // of a target's receivers must lie on the scene
 constexpr std::size_t kReceiversPerLight = 40;  // at least, for a trace to tell where lights are and to judge them
@@ -183,21 +184,32 @@ bool region_may_grow(const SolveProblem& problem) {
   return load_transport_cache_header(*problem.cache_file).grid.region == default_region(problem.tracer);
 }
 
-// Of what is painted, where a grid of the whole scene would hardly have a light. Absent: it has, or what is painted is
-// hardly a surface.
-std::optional<Box3f> surroundings(const SolveProblem& problem) {
-  const Target& target = problem.target;
-  Box3f painted;
-  std::size_t weighed = 0;
+// The brightest receivers, which hold all that counts of the target.
+std::vector<std::size_t> lit_receivers(const Target& target) {
+  std::vector<double> energy;
   for (std::size_t i = 0; i < target.receivers.size(); ++i) {
-    if (!(target.weight[i] > 0)) continue;
-    painted.extend(target.receivers.samples[i].position);
-    ++weighed;
+    energy.push_back(double(target.weight[i]) * squared_norm(target.illumination[i]));
   }
-  if (weighed < kReceiversPerLight) return std::nullopt;
-  const float diagonal = painted.diagonal(), longest = max_component(default_region(problem.tracer).extent());
+  std::vector<std::size_t> brightest = all_indices(energy.size());
+  std::sort(brightest.begin(), brightest.end(), [&](std::size_t a, std::size_t b) { return energy[a] > energy[b]; });
+  double left = std::accumulate(energy.begin(), energy.end(), 0.0);
+  const double unlit = kUnlit * left;
+  std::size_t count = 0;
+  while (count < brightest.size() && left > unlit) left -= energy[brightest[count++]];
+  brightest.resize(count);
+  return brightest;
+}
+
+// Of what is lit, where a grid of the whole scene would hardly have a light. Absent: it has, or what is lit is hardly a
+// surface.
+std::optional<Box3f> surroundings(const SolveProblem& problem) {
+  const std::vector<std::size_t> lit = lit_receivers(problem.target);
+  if (lit.size() < kReceiversPerLight) return std::nullopt;
+  Box3f box;
+  for (const std::size_t i : lit) box.extend(problem.target.receivers.samples[i].position);
+  const float diagonal = box.diagonal(), longest = max_component(default_region(problem.tracer).extent());
   const Vec3f around{diagonal, diagonal, diagonal};
-  const Box3f region{painted.min - around, painted.max + around};
+  const Box3f region{box.min - around, box.max + around};
   return max_component(region.extent()) < kHardlySeen * longest ? std::optional(region) : std::nullopt;
 }
 
