@@ -3,7 +3,6 @@
 #include "cli/interruption.h"
 #include "cli/output_paths.h"
 #include "cli/text_output.h"
-#include "renderer/core/error.h"
 #include "renderer/core/seconds_since.h"
 
 namespace chiaro::cli {
@@ -24,9 +23,7 @@ void Session::warn(const std::vector<std::string>& texts) {
   warnings_.insert(warnings_.end(), texts.begin(), texts.end());
 }
 
-void Session::stop_if_interrupted() const {
-  if (control_.stop_requested()) throw renderer::Interruption();
-}
+void Session::stop_if_interrupted() const { control_.stop_if_requested(); }
 
 void Session::require_outputs(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {

@@ -9,10 +9,10 @@
 #include "inverse/solve/insertion.h"
 #include "inverse/solve/known_corrections.h"
 #include "inverse/solve/pair_of_lights.h"
+#include "inverse/solve/sets_without_one.h"
 #include "inverse/solve/split_lights.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
-#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/core/seconds_since.h"
 
@@ -120,7 +120,7 @@ class Search {
 
   // Refines them and keeps the best, if none of its size was better, without the lights that went out.
   void consider(std::vector<LightEstimates> starts, const JointRefinementOptions& how = kSearching) {
-    if (options_.control.stop_requested()) throw renderer::Interruption();
+    options_.control.stop_if_requested();
     if (starts.size() > kFinalists) starts = best_sets(refine_all(starts, kFirstSteps), kFinalists);
     std::vector<JointRefinement> refined = refine_all(starts, how);
     const auto best = std::min_element(refined.begin(), refined.end(),
@@ -249,7 +249,7 @@ class Search {
   // From the largest set down: without each light in turn, intensities refitted, the best of them refined.
   void eliminate_lights() {
     for (std::size_t size = best_.size() - 1; size > least_sought() && !out_of_time(); --size) {
-      if (!best_[size].lights.empty()) consider(parents(observations_, best_[size].lights, 1));
+      if (!best_[size].lights.empty()) consider(sets_without_one(response_, observations_, best_[size].lights, 1));
     }
   }
 
@@ -266,7 +266,8 @@ class Search {
     for (std::size_t size = knee(); size < best_size() && !out_of_time(); ++size) shake(size);
     for (std::size_t size = best_size(); size > 1 && !out_of_time(); --size) {
       consider({best_[size].lights}, kToTheEnd);
-      std::vector<LightEstimates> smaller = parents(observations_, best_[size].lights, kMostParents);
+      std::vector<LightEstimates> smaller =
+          sets_without_one(response_, observations_, best_[size].lights, kMostParents);
       if (!best_[size - 1].lights.empty()) smaller.push_back(best_[size - 1].lights);
       consider(smaller);
       if (best_[size - 1].error < kKnee * best_[size].error) consider({best_[size - 1].lights}, kToTheEnd);
@@ -296,7 +297,8 @@ class Search {
       if (size < kCrowd || size >= best_.size() || best_[size].lights.empty()) break;
       const double error = best_[size].error;
       if (error <= kSurelyNoise * observations_.noise) break;
-      for (const LightEstimates& others : parents(observations_, best_[size].lights, kMostExchanged)) {
+      for (const LightEstimates& others :
+           sets_without_one(response_, observations_, best_[size].lights, kMostExchanged)) {
         if (!out_of_time()) consider_one_more(others);
       }
       if (int(size) < most_searched()) consider_one_more(best_[size].lights);
@@ -331,7 +333,7 @@ class Search {
       const LightEstimates& larger = closest(size + 1).lights;
       const bool is_all_there_may_be = int(size) == most_lights();
       std::vector<LightEstimates> starts =
-          parents(*options_.judged, larger, is_all_there_may_be ? kMostParents : std::size_t{1});
+          sets_without_one(response_, *options_.judged, larger, is_all_there_may_be ? kMostParents : std::size_t{1});
       if (!best_[size].lights.empty()) starts.push_back(best_[size].lights);
       for (JointRefinement& set : refine_all(*options_.judged, starts, kSearching)) {
         const bool all_shine = std::none_of(set.lights.begin(), set.lights.end(), is_dark);
@@ -345,25 +347,6 @@ class Search {
   Candidate& closest(std::size_t size) {
     const bool known = size < closest_.size() && !closest_[size].lights.empty();
     return known ? closest_[size] : best_[size];
-  }
-
-  // Without one light each; those of the least errors.
-  std::vector<LightEstimates> parents(const Observations& observations, const LightEstimates& all,
-                                      std::size_t most) const {
-    const std::vector<Column> columns = evaluate_columns(response_, all, Evaluation::kTracedVisibility);
-    std::vector<Candidate> candidates;
-    for (std::size_t without = 0; without < all.size(); ++without) {
-      candidates.push_back(refitted_without(observations, all, columns, without));
-    }
-    return best_sets(std::move(candidates), most);
-  }
-
-  static Candidate refitted_without(const Observations& observations, LightEstimates lights,
-                                    std::vector<Column> columns, std::size_t without) {
-    lights.erase(lights.begin() + std::ptrdiff_t(without));
-    columns.erase(columns.begin() + std::ptrdiff_t(without));
-    const double error = refit_intensities(observations, columns, lights);
-    return {std::move(lights), error};
   }
 
   LightCountResult result() {

@@ -13,7 +13,6 @@
 #include "inverse/numerics/surface_contact.h"
 #include "inverse/numerics/two_sided_surface.h"
 #include "inverse/transport/eigen_vectors.h"
-#include "renderer/core/error.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -52,15 +51,11 @@ void sort_unique(std::vector<std::uint32_t>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-void check_interruption(const renderer::Control& control) {
-  if (control.stop_requested()) throw renderer::Interruption();
-}
-
 std::vector<std::uint32_t> triangles_near(const ReceiverSurface& surface, const SurfacePath& path, double radius,
                                           const renderer::Control& control) {
   std::vector<std::uint32_t> near;
   for (const Piece& piece : path.pieces) {
-    check_interruption(control);
+    control.stop_if_requested();
     visit_near_piece(surface, piece, radius, [&](std::uint32_t item, const Vector3d& center, double around) {
       if (closest_on_surface(surface, item, center).distance <= around) near.push_back(item);
     });
@@ -265,7 +260,7 @@ std::vector<numerics::GeodesicSource> make_sources(const ReceiverSurface& surfac
   std::vector<numerics::GeodesicSource> points, segments;
   std::vector<std::uint32_t> items;
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
-    check_interruption(control);
+    control.stop_if_requested();
     const double tolerance = kOnFace * scale;
     const Piece& piece = path.pieces[i];
     items.clear();
@@ -328,7 +323,7 @@ std::vector<PathDistance> distances_through_space(const ReceiverSurface& surface
                                                   double radius, const renderer::Control& control) {
   std::vector<PathDistance> all;
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
-    check_interruption(control);
+    control.stop_if_requested();
     const Piece& piece = path.pieces[i];
     std::vector<std::uint32_t> receivers;
     visit_near_piece(surface, piece, radius, [&](std::uint32_t item, const Vector3d&, double) {

@@ -103,7 +103,7 @@ Damage copy_entries(const Copy& copy, Baker::Place start, Step step) {
   Baker::Place at = start;
   for (; at.light < lights; at = {at.light + step.lights, copy.range.first}) {
     for (; at.receiver < copy.range.last; at.receiver += step.receivers) {
-      if (copy.control.stop_requested()) throw renderer::Interruption();
+      copy.control.stop_if_requested();
       TransportBlock block;
       block.first_light = at.light, block.light_count = std::min(step.lights, lights - at.light);
       block.first_receiver = at.receiver;

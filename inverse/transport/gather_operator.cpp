@@ -8,7 +8,6 @@
 #include "inverse/transport/eigen_vectors.h"
 #include "inverse/transport/gather_cells.h"
 #include "inverse/transport/nearest_gather_point.h"
-#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/bsdf.h"
 
@@ -110,7 +109,7 @@ SparseTransport trace_rows(const RayTracer& tracer, std::span<const SurfaceSampl
   constexpr std::size_t kBlock = 32;
   renderer::parallel_for((chosen.size() + kBlock - 1) / kBlock, "gather", control, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(chosen.size(), (block + 1) * kBlock); ++i) {
-      if (control.stop_requested()) throw renderer::Interruption();
+      control.stop_if_requested();
       rows[i] = row_of(gather_hits(tracer, from[chosen[i]], chosen[i], rays, seed), rays, nearest);
     }
   });
@@ -260,7 +259,7 @@ std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& 
                                                                const renderer::Control& control) {
   std::vector<std::vector<Vec3f>> all;
   while (!lights.empty()) {
-    if (control.stop_requested()) throw renderer::Interruption();
+    control.stop_if_requested();
     const auto some = lights.first(lights_at_once(lights.size()));
     if (some.size() == 1) {
       append_indirect<OneLight>(tracer, gather, some, all);

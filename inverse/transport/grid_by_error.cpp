@@ -125,10 +125,6 @@ std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
   return pointers;
 }
 
-void check_interruption(const renderer::Control& control) {
-  if (control.stop_requested()) throw renderer::Interruption();
-}
-
 // The coarsest regular grid of this median error.
 LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, const LightGridOptions& options,
                        const BakeSettings& settings, const renderer::Control& control) {
@@ -136,7 +132,7 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
   const auto positions = test.exact(random_light_positions(tracer, region, kPositions, settings.seed));
   double lights = kFirstLights, least = std::numeric_limits<double>::infinity();
   while (lights <= double(kMostGridLights)) {
-    check_interruption(control);
+    control.stop_if_requested();
     LightGrid grid = make_light_grid(tracer, {.region = options.region, .parts = options.parts, .lights = lights});
     const double error = numerics::median(test.errors(grid, pointers_to(test.rows_of(grid.positions)), positions));
     if (error <= options.error) return grid;
@@ -183,7 +179,7 @@ class Refinement {
   LightGrid run(const renderer::Control& control) {
     std::vector<GridCell> cells = whole_cells(grid_);
     for (int level = 1; level <= kMostLevels && !cells.empty(); ++level) {
-      check_interruption(control);
+      control.stop_if_requested();
       std::vector<GridCell> parts;
       for (const GridCell& cell : wrong_ones(cells)) {
         const std::vector<GridCell> these = halves(grid_, cell);

@@ -11,6 +11,10 @@
 
 namespace chiaro::renderer {
 
+void Control::stop_if_requested() const {
+  if (stop_requested()) throw Interruption();
+}
+
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   ForkJoin loop;
   const auto run = [&](std::size_t i) CHIARO_UNSEEN_BY_THREAD_SANITIZER {
@@ -26,7 +30,7 @@ void parallel_for(std::size_t count, std::string_view stage, const Control& cont
   std::size_t done = 0;
   if (control.report) control.report(stage, 0);
   parallel_for(count, [&](std::size_t i) {
-    if (control.stop_requested()) throw Interruption();
+    control.stop_if_requested();
     body(i);
     if (!control.report) return;
     const std::lock_guard lock(mutex);

@@ -17,6 +17,7 @@ struct Control {
   const std::atomic<bool>* interrupted = nullptr;
 
   bool stop_requested() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
+  void stop_if_requested() const;  // throws Interruption
   // Of a stage that is only to be asked to stop.
   Control without_progress() const { return {.report = {}, .report_noise = {}, .interrupted = interrupted}; }
 };

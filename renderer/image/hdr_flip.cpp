@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/core/error.h"
 #include "renderer/core/vec.h"
 
 namespace chiaro::renderer {
@@ -76,7 +75,7 @@ HdrFlip hdr_flip(const Image& a, const Image& reference, double pixels_per_degre
   choose_exposures(reference, a, result);
   result.error = make_image(a.width, a.height, {"FLIP"});
   for (int i = 0; i < result.exposures; ++i) {
-    if (control.stop_requested()) throw Interruption();
+    control.stop_if_requested();
     if (control.report) control.report("FLIP", double(i) / result.exposures);
     const double exposure = result.start + (result.stop - result.start) * i / (result.exposures - 1);
     keep_larger(flip_of_linear(shown_at(a, exposure), shown_at(reference, exposure), pixels_per_degree), result.error);

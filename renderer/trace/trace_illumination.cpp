@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "renderer/core/error.h"
 #include "renderer/trace/path_tracer.h"
 
 namespace chiaro::renderer {
@@ -35,10 +34,6 @@ struct Sampling {
   bool tells_error() const { return !noisy || batches > 1; }
   int samples_of(int batch) const { return options.samples / batches + (batch < options.samples % batches ? 1 : 0); }
 
-  void stop_if_asked() const {
-    if (control.stop_requested()) throw Interruption();
-  }
-
   const Control& control;
   PathTracer paths;
   TraceOptions options;
@@ -60,7 +55,7 @@ void add_batch(const Sampling& sampling, const PathTracer::Receiver& at, int bat
                PathLight& light) {
   const std::uint64_t seed = seed_of_batch(sampling.options.seed, std::uint64_t(batch) + 1);
   for (int i = 0; i < sampling.samples_of(batch); ++i) {
-    sampling.stop_if_asked();  // a point may have millions
+    sampling.control.stop_if_requested();  // a point may have millions
     Sampler sampler(seed, stream, std::uint32_t(i));
     sampling.paths.add_illumination(at, sampling.with_punctual, sampler, light);
   }
