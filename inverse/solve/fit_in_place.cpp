@@ -113,7 +113,9 @@ LightIntervals intervals_of(const Observations& observations, const TracedColumn
       for (std::size_t k = j + 1; k < intensity.size(); ++k) {
         const auto a = Eigen::Index(j), b = Eigen::Index(k);
         const double dimmer = std::min(intensity[j][c], intensity[k][c]);
-        if (only_their_sum_is_known(variance[a], variance[b], covariance(a, b), dimmer)) confounded.emplace(j, k);
+        if (may_shine(intensity[j], c) && may_shine(intensity[k], c) &&
+            only_their_sum_is_known(variance[a], variance[b], covariance(a, b), dimmer))
+          confounded.emplace(j, k);
       }
     }
   }

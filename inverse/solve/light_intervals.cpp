@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kParameters = 6;          // of a light: x, y, z, red, green, blue
 constexpr double kOpposed = 0.9;        // correlation, and less than its negative: one makes good what the other lacks
+constexpr double kDarkChannel = 0.01;   // of the light's brightest
 constexpr double kUnknown = 1e-10;      // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
 constexpr double kLeastOutside = 0.01;  // of what a receiver leaves, as far as the others decide it
 
@@ -104,9 +105,11 @@ Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
   return pulls;
 }
 
+// In a channel that both may shine in.
 bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimates& lights, std::size_t j,
                            std::size_t k) {
   for (int c = 0; c < 3; ++c) {
+    if (!may_shine(lights[j].intensity, c) || !may_shine(lights[k].intensity, c)) continue;
     const auto a = Eigen::Index(kParameters * j + 3) + c, b = Eigen::Index(kParameters * k + 3) + c;
     const double dimmer = std::min(lights[j].intensity[c], lights[k].intensity[c]);
     if (only_their_sum_is_known(covariance(a, a), covariance(b, b), covariance(a, b), dimmer)) return true;
@@ -115,6 +118,10 @@ bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimat
 }
 
 }  // namespace
+
+bool may_shine(const Eigen::Array3d& intensity, int channel) {
+  return intensity[channel] >= kDarkChannel * intensity.maxCoeff();
+}
 
 bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer) {
   const double one = std::sqrt(variance), other = std::sqrt(other_variance);

@@ -22,6 +22,9 @@ inline constexpr std::size_t kMostLightsWithIntervals = 100;
 
 inline constexpr double kNinety = 1.645;  // standard deviations to either side
 
+// Whether a light's colour has enough of a channel to say anything by; one that is dark may have any colour.
+bool may_shine(const Eigen::Array3d& intensity, int channel);
+
 // Of two intensities of one channel: what one light has more the other has less, by as much as the dimmer one shines.
 bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer);
 

@@ -19,15 +19,16 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr int kRounds = 3, kDrafts = 5, kMostFurther = 3;
-constexpr double kLeastPaths = 2e6;   // of all receivers together …
-constexpr int kEnoughSamples = 256;   // … or so many per receiver
-constexpr std::size_t kMany = 30000;  // receivers at most …
-constexpr std::size_t kSome = 8000;   // … and while lights are on their way
-constexpr double kNear = 1e-3;        // of the region's diagonal: of all light, that by bounces hardly changes …
-constexpr double kVeryNear = 0.1;     // … or, so many times as far, not at all …
-constexpr double kCarried = 10;       // … or, so many times as far, can be carried along
-constexpr double kAstray = 1.1;  // of the error as found, which has more noise: that of lights that noise has not led
-constexpr double kLeastDirect = 0.2;  // of a light's norm: direct light alone is the instrument
+constexpr double kLeastPaths = 2e6;    // of all receivers together …
+constexpr int kEnoughSamples = 256;    // … or so many per receiver
+constexpr std::size_t kMany = 30000;   // receivers at most …
+constexpr std::size_t kSome = 8000;    // … and while lights are on their way
+constexpr double kNear = 1e-3;         // of the region's diagonal: of all light, that by bounces hardly changes …
+constexpr double kVeryNear = 0.1;      // … or, so many times as far, not at all …
+constexpr double kCarried = 10;        // … or, so many times as far, can be carried along
+constexpr double kAstray = 1.1;        // of the error as found, beyond noise …
+constexpr double kNoiseOfNoise = 0.1;  // … and of its squared noise: that of lights that noise has not led
+constexpr double kLeastDirect = 0.2;   // of a light's norm: direct light alone is the instrument
 
 // Direct light alone tells of lights here: none of them may be hidden from nearly all receivers.
 bool any_hidden(const SettlingBench& bench, const FreeLights& free) {
@@ -221,7 +222,8 @@ class Settler {
 
   LightsByTrace settle(const LightEstimates& lights) {
     LightsByTrace by_trace = come_to_rest_from(lights);
-    by_trace.went_astray = error_of(by_trace.traced) > kAstray * error_as_found_.value();
+    const double allowed = kAstray * kAstray * as_found_->beyond_noise + kNoiseOfNoise * as_found_->noise;
+    by_trace.went_astray = squared_error_of(by_trace.traced).beyond_noise > allowed;
     return by_trace;
   }
 
@@ -258,8 +260,13 @@ class Settler {
 
   bool out_of_time() const { return clock_.out_of_time(); }
 
-  double error_of(const FreshTrace& traced) const {
-    return relative_l2(traced.all.value, problem_.target.illumination, problem_.target.weight);
+  struct SquaredError {
+    double beyond_noise = 0, noise = 0;  // of the trace
+  };
+  SquaredError squared_error_of(const FreshTrace& traced) const {
+    const double all = relative_l2(traced.all.value, problem_.target.illumination, problem_.target.weight);
+    const double noise = noise_of(traced, problem_.target).value_or(0);
+    return {std::max(0.0, all * all - noise * noise), noise * noise};
   }
 
   void finish(const char* stage, std::size_t lights, bool rests) {
@@ -268,7 +275,7 @@ class Settler {
 
   FreshTrace trace_first_part_of(const LightEstimates& lights) {
     FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_, clock_);
-    if (!error_as_found_) error_as_found_ = error_of(traced);
+    if (!as_found_) as_found_ = squared_error_of(traced);
     clock_.finish("verification", verification_figures(traced, problem_.target));
     return traced;
   }
@@ -348,7 +355,7 @@ class Settler {
   const Settling with_, on_the_way_;
   const std::vector<Eigen::Vector3d> places_;  // where a light may have been missed
   std::optional<FreshTrace> first_part_{};     // of the trace where the lights are in the end; absent: they moved since
-  std::optional<double> error_as_found_{};     // of the lights as they were found, by a first part
+  std::optional<SquaredError> as_found_{};     // of the lights as they were found, by a first part
   double seconds_ = 0;                         // without the traces
   int further_lights_ = 0;
 };

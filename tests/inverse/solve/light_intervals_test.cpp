@@ -87,5 +87,16 @@ TEST(LightIntervals, LightsSideBySideAreNotToldApart) {
   EXPECT_EQ(pairs[0], (std::pair<std::size_t, std::size_t>{1, 2}));
 }
 
+// What hardly shines at all in a channel, one way or the other, says nothing about the lights.
+TEST(LightIntervals, LightsOfDifferentColoursAreToldApart) {
+  LightEstimates lights = known_lights(2);
+  lights[1].position = lights[0].position + Vector3d(0.3, 0.1, 0);
+  lights[0].intensity = {3, 1e-9, 1e-9};
+  lights[1].intensity = {1e-9, 1e-9, 1};
+  const DirectProblem problem(lights);
+  EXPECT_TRUE(
+      light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), lights).confounded.empty());
+}
+
 }  // namespace
 }  // namespace chiaro::inverse
