@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/add_options.h"
 #include "cli/commands.h"
@@ -17,6 +18,7 @@ namespace chiaro::cli {
 namespace {
 
 constexpr int kDefaultSamples = 64;
+constexpr int kUntilClean = 1 << 14, kUntilTimeIsUp = 1 << 20;  // in place of them
 
 struct RenderCommand {
   CommonOptions common;
@@ -90,6 +92,15 @@ int interrupted_with(const std::string& output) {
   return kInterrupted;
 }
 
+// As many as it takes, where the user says when it ends and not by how many.
+TransportOptions transport_of(const RenderCommand& options) {
+  TransportOptions transport = options.transport;
+  if (options.command->count("--samples") > 0) return transport;
+  if (options.frame.time_limit > 0) transport.samples = kUntilTimeIsUp;
+  if (options.frame.noise_threshold > 0) transport.samples = kUntilClean;
+  return transport;
+}
+
 int run_render(const RenderCommand& options) {
   Session session(options.common);
   session.require_outputs({options.output, preview_of(options)});
@@ -101,7 +112,7 @@ int run_render(const RenderCommand& options) {
   warn_of_idle_options(options, session);
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
-                                             {trace_options(options.transport, options.common), session.control()});
+                                             {trace_options(transport_of(options), options.common), session.control()});
   const std::size_t held = save_outputs(options, camera, lights, frame);
   warn_of_frame(frame, held, options.output, session);
   print_summary(session, options, camera, frame);
@@ -117,10 +128,10 @@ CommandRun add_render(CLI::App& command) {
   add_output(command, {"-o,--output", "F.exr", "The frame"}, options->output, {".exr"});
   add_input_file(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
   add_text(command, {"--camera", "NAME", "Camera (default: the first)"}, options->camera);
-  add_number(command, {"--time", "SECONDS", "Render for so long; --samples is then the most"},
+  add_number(command, {"--time", "SECONDS", "Render for so long; --samples, if given, is then the most"},
              options->frame.time_limit, kPositive);
   add_flag(command, "--preview", options->preview, "Write F.png beside the frame, through OpenColorIO");
-  add_frame_options(command, options->frame, "--samples");
+  add_frame_options(command, options->frame, fmt::format("--samples, {} by default,", kUntilClean));
   add_hide_backs(command, options->transport.materials);
   add_transport_options(command, options->transport, "Paths per pixel");
   add_common_options(command, options->common);

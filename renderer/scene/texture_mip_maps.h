@@ -4,7 +4,8 @@
 
 namespace chiaro::renderer {
 
-// Makes the mip maps of every texture that a material uses.
+// Makes the mip maps of every texture that a material uses. Textures that materials use in several ways, as colour and
+// as data, or with alpha as coverage and without, are copied: each way has its own.
 void make_mip_maps(Scene& scene);
 
 }  // namespace chiaro::renderer

@@ -12,6 +12,12 @@ constexpr float kLeastAlpha = 1e-3F;     // a smaller one is a mirror to any eye
 constexpr float kPunctualAlpha = 5e-3F;  // a lamp of 1 cm at a metre
 constexpr float kBlurredAlpha = 0.1F;
 
+// Of light from or to directions of these cosines, per cosine: what facets that scatter once lose of it, spread evenly.
+float lost_by_scattering_once(float from, float to, float alpha) {
+  const float lost = specular_albedo(from, alpha).loss() * specular_albedo(to, alpha).loss();
+  return kInvPi * std::max(0.0F, lost) / std::max(1e-6F, mean_specular_albedo(alpha).loss());
+}
+
 }  // namespace
 
 float least_alpha(float roughness) { return std::max(roughness * roughness, kLeastAlpha); }
@@ -39,7 +45,7 @@ BsdfBase::BsdfBase(const SurfacePoint& point)
   f0_ = layers.specular * min(normal_reflectance(layers.ior) * layers.specular_color, kWhite);
   coat_f0_ = max_component(f0_);
   transmission_ = (1 - metallic_) * layers.transmission;
-  diffusion_ = inside ? 0 : 1 - layers.transmission;
+  diffusion_ = 1 - layers.transmission;
   clear_ = transmission_ > 0 && is_clear(point.roughness);
   if (layers.solid && bends(layers.ior)) eta_ = inside ? 1 / layers.ior : layers.ior;
 }
@@ -50,7 +56,30 @@ BsdfSketch BsdfBase::sketch() const {
 }
 
 // What the coat sends back of all light from one direction.
-float BsdfBase::coat(float cosine) const { return specular_albedo(cosine, alpha_).at(coat_f0_, f90_); }
+float BsdfBase::coat(float cosine) const {
+  if (seen_from_inside()) return max_component(dielectric_reflectance_of(cosine));
+  return specular_albedo(cosine, alpha_).at(coat_f0_, f90_);
+}
+
+// Of light from everywhere. As much light goes out of a solid as into it, from η² of the directions.
+float BsdfBase::mean_coat() const {
+  if (!seen_from_inside()) return mean_specular_albedo(alpha_).at(coat_f0_, f90_);
+  constexpr int kSteps = 32;  // of the squared cosine
+  float let_in = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    let_in += (1 - dielectric_reflectance(std::sqrt((float(k) + 0.5F) / kSteps), 1 / eta_)) / kSteps;
+  }
+  const float least = normal_reflectance(eta_), weight = (1 - let_in * eta_ * eta_ - least) / (1 - least);
+  return max_component(lerp(weight, f0_, f90_ * kWhite));
+}
+
+// The part of what facets of the metal lose by scattering once that more reflections bring out.
+Vec3f BsdfBase::scattered_by_metal() const {
+  constexpr float kMeanSchlickWeight = 1.0F / 21;
+  const Vec3f mean = lerp(kMeanSchlickWeight, base_color_, kWhite);
+  const float out = 1 - mean_specular_albedo(alpha_).loss();
+  return mean * mean * out / (kWhite - (1 - out) * mean);
+}
 
 // Fresnel's equations, scaled so that they run from f0 to f90 as Schlick's formula does.
 Vec3f BsdfBase::dielectric_reflectance_of(float cosine) const {
@@ -79,11 +108,14 @@ Vec3f BsdfBase::reflection(Vec3f wo, Vec3f wi, float alpha, float diffuse_fade) 
   const Vec3f h = normalize(wo + wi);
   const float specular = ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha);
   const Vec3f facets = (widening_gain(wo.z, alpha_, alpha) * specular) * facet_reflectance(dot(wo, h));
-  const float diffusion = (1 - metallic_) * diffusion_ * diffuse_fade;
-  if (!(diffusion > 0)) return wi.z * facets;
-  const float below_mean = 1 - mean_specular_albedo(alpha_).at(coat_f0_, f90_);
-  const float below = below_mean > 0 ? (1 - coat(wo.z)) * (1 - coat(wi.z)) / below_mean : 0;
-  return wi.z * ((diffusion * below * kInvPi) * base_color_ + facets);
+  Vec3f diffuse{};
+  if (metallic_ < 1 && diffusion_ > 0) {
+    const float below_mean = 1 - mean_coat();
+    const float below = below_mean > 0 ? (1 - coat(wo.z)) * (1 - coat(wi.z)) / below_mean : 0;
+    diffuse += ((1 - metallic_) * diffusion_ * below * kInvPi) * base_color_;
+  }
+  if (metallic_ > 0) diffuse += (metallic_ * lost_by_scattering_once(wo.z, wi.z, alpha_)) * scattered_by_metal();
+  return wi.z * (diffuse_fade * diffuse + facets);
 }
 
 Vec3f BsdfBase::transmission(Vec3f wo, Vec3f wi, LightSource source) const {
@@ -94,11 +126,8 @@ Vec3f BsdfBase::transmission(Vec3f wo, Vec3f wi, LightSource source) const {
     return t.value > 0 ? (facet_transmittance(dot(wo, t.half)) * t.value) * base_color_ : Vec3f{};
   }
   const ggx::Transmission t = ggx::thin_transmission(wo, wi, widened_alpha(alpha_, source));
-  const float lost = specular_albedo(wo.z, alpha_).loss() * specular_albedo(-wi.z, alpha_).loss() /
-                     std::max(1e-6F, mean_specular_albedo(alpha_).loss());
-  const float value =
-      facet_transmittance(dot(wo, t.half)) * t.value - transmission_ * std::max(0.0F, lost) * kInvPi * wi.z;
-  return value * base_color_;
+  const float lost = lost_by_scattering_once(wo.z, -wi.z, alpha_);
+  return (facet_transmittance(dot(wo, t.half)) * t.value - transmission_ * lost * wi.z) * base_color_;
 }
 
 Vec3f BsdfBase::eval(Vec3f wo, Vec3f wi, LightSource source, float diffuse_fade) const {
@@ -108,11 +137,12 @@ Vec3f BsdfBase::eval(Vec3f wo, Vec3f wi, LightSource source, float diffuse_fade)
 
 BsdfBase::Weights BsdfBase::weights(Vec3f wo) const {
   const SpecularAlbedo albedo = specular_albedo(wo.z, alpha_);
-  const float sent_back = albedo.at(coat_f0_, f90_), metal = albedo.at(luminance(base_color_));
+  const float sent_back = coat(wo.z), metal = albedo.at(luminance(base_color_));
   const float below = (1 - sent_back) * luminance(base_color_);
   Weights w;
   w.facets = (1 - metallic_) * sent_back + metallic_ * metal;
   w.diffuse = (1 - metallic_) * diffusion_ * below;
+  if (metallic_ > 0) w.diffuse += metallic_ * std::max(0.0F, albedo.loss()) * luminance(scattered_by_metal());
   if (!transmits()) return w;
   if (goes_straight()) {
     w.straight = transmission_ * below;
@@ -184,7 +214,8 @@ Vec3f BsdfBase::hemispherical_reflectance() const {
   const SpecularAlbedo albedo = mean_specular_albedo(alpha_);
   const Vec3f facets = albedo.scale * f0_ + (f90_ * albedo.bias) * kWhite;
   const Vec3f dielectric = facets + (diffusion_ * (1 - albedo.at(coat_f0_, f90_))) * base_color_;
-  return lerp(metallic_, dielectric, albedo.scale * base_color_ + albedo.bias * kWhite);
+  const Vec3f metal = albedo.scale * base_color_ + albedo.bias * kWhite;
+  return lerp(metallic_, dielectric, metal + std::max(0.0F, albedo.loss()) * scattered_by_metal());
 }
 
 }  // namespace chiaro::renderer

@@ -8,10 +8,11 @@
 //   that falls on it at grazing angles. Here it gets just what the coat leaves, so that a white dielectric's albedo is
 //   one: c/π (1 − E(θ_o)) (1 − E(θ_i)) / (1 − E_mean), E: albedo of F_d S.
 //   Source: Kelemen & Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, 2001.
-// - light that the facets let through: through a thin sheet, with what a rough one loses by scattering once given back
-//   as diffuse light (Kulla & Conty, Revisiting Physically Based Shading at Imageworks, 2017), or into a solid. The
-//   boundary of a solid reflects by Fresnel's equations, from inside too.
-// Directions are unit, in the frame of the shading normal (+Z), which the viewer is above.
+// - light that the facets let through: through a thin sheet or into a solid. The boundary of a solid reflects by
+//   Fresnel's equations, from inside too.
+// What rough metals and thin sheets lose where facets scatter light but once is given back as diffuse light, tinted by
+// as many reflections as it takes (Kulla & Conty, Revisiting Physically Based Shading at Imageworks, 2017). Directions
+// are unit, in the frame of the shading normal (+Z), which the viewer is above.
 
 #include <optional>
 
@@ -85,6 +86,9 @@ class BsdfBase {
   Vec3f reflection(Vec3f wo, Vec3f wi, float alpha, float diffuse_fade) const;
   Vec3f transmission(Vec3f wo, Vec3f wi, LightSource source) const;
   float coat(float cosine) const;
+  float mean_coat() const;
+  bool seen_from_inside() const { return eta_ > 0 && eta_ < 1; }
+  Vec3f scattered_by_metal() const;
   bool refracts() const { return eta_ > 0; }
   bool goes_straight() const { return clear_ && !refracts(); }
 

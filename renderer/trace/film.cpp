@@ -168,8 +168,8 @@ int Film::half_samples(std::size_t tile, int half) const {
 
 int Film::tile_samples(std::size_t tile) const { return half_samples(tile, 0) + half_samples(tile, 1); }
 
-// Halves count the same even where one has more samples: their means are without bias, a mean weighted by numbers of
-// samples that the samples themselves have decided is not.
+// Halves count the same even where one has more samples: each goes by the other's samples, a mean weighted by numbers of
+// samples would go by its own.
 std::array<double, 2> Film::half_weights(std::size_t tile) const {
   const int a = half_samples(tile, 0), b = half_samples(tile, 1);
   if (b == 0) return {a > 0 ? 1.0 / a : 0.0, 0};

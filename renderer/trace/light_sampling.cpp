@@ -59,6 +59,14 @@ Vec3f covered_emission(const Scene& scene, const Mesh& mesh, std::uint32_t trian
   return surface_coverage(scene, mesh, triangle, u, v) * surface_emission(scene, mesh, triangle, u, v);
 }
 
+// The same as what met that point sees, which a clearcoat leaves less of the flatter it is seen.
+Vec3f covered_emission_towards(const Scene& scene, const Ray& ray, const Hit& hit) {
+  const Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+  const auto& layers = scene.materials[mesh.material].layers;
+  if (!layers || !(layers->clearcoat > 0)) return covered_emission(scene, mesh, hit.triangle, hit.u, hit.v);
+  return surface_coverage(scene, mesh, hit.triangle, hit.u, hit.v) * make_surface_point(scene, ray, hit).emission;
+}
+
 // Mean luminance over a triangle of a texture, from a few points; never zero where anything may be emitted.
 float mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   constexpr float kPoints[][2] = {{1 / 3.F, 1 / 3.F}, {.1F, .1F},  {.8F, .1F}, {.1F, .8F},
@@ -164,7 +172,8 @@ EmissiveTriangles::Sample EmissiveTriangles::sample(Vec3f point, Vec3f normal, d
   // Where floats can tell that the ray has not yet met the triangle.
   const float rounding = surface_rounding(e.extent.largest_coordinate, e.extent.circle_radius + s.distance);
   s.reach = s.distance - std::min(2 * rounding / cosine, 0.5F * s.distance);
-  s.radiance = covered_emission(scene_, scene_.meshes[scene_.instances[e.instance].mesh], e.triangle, bu, bv);
+  s.radiance = covered_emission_towards(scene_, {.origin = point, .direction = s.to_light},
+                                        {s.distance, bu, bv, std::uint32_t(e.instance), e.triangle, e.normal, false});
   s.pdf = found->probability / e.area * d2 / cosine;
   return s;
 }

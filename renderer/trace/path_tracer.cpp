@@ -16,13 +16,6 @@ constexpr float kMostSurvival = 0.995F;
 // light; farther away scattered rays find as much, for less.
 constexpr float kSubpathReach = 0.1F;
 
-// By how much the cone grows that a scattered ray stands for when textures are looked up: by the width of the
-// directions that share its density, as if some hundred rays shared them.
-float scattered_cone(float pdf) {
-  constexpr float kScattered = 0.0625F;
-  return pdf > 0 ? kScattered / std::sqrt(pdf) : 0;
-}
-
 // Emission from no triangle at all, where the scene's own is not wanted.
 const Scene& scene_without_emission() {
   static const Scene empty;
@@ -277,8 +270,6 @@ bool PathTracer::scatter(const Vertex& vertex, const SurfacePoint& point, Sample
 void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path& path) const {
   for (int straight = 0; straight < kMostClearSurfaces;) {
     Ray ray{scattered.origin, scattered.direction, 0, kInfinity, path.sampler.next_bits()};
-    ray.cone_spread = scattered_cone(scattered.pdf);
-    ray.cone_width = ray.cone_spread * scattered.travelled;
     ray.of_camera = scattered.from_camera();
     const auto hit = tracer_.intersect(ray);
     if (!hit) return add_missed(scattered, index, throughput, path);

@@ -22,8 +22,8 @@ struct Ray {
   Vec3f direction;  // unit, unless near and far are meant in its length
   float near = 0, far = kInfinity;
   std::uint32_t alpha_seed = 0;  // decides which alpha-blended surfaces the ray passes: 1 − alpha of all seeds do
-  // The cone that the ray stands for, for texture filtering: its width at the origin, metres, and by how much it grows
-  // with each metre. Zero: textures are looked up in full.
+  // The cone that a camera's ray stands for, for texture filtering: its width at the origin, metres, and by how much it
+  // grows with each metre. Zero: textures are looked up in full, as scattered rays do, whose mean no filter may change.
   float cone_width = 0, cone_spread = 0;
   ClearSurfaces clear = ClearSurfaces::kStop;
   bool of_camera = false;  // sees unlit surfaces, which all others pass, and passes backs that are hidden

@@ -113,15 +113,15 @@ Vec3f mapped_normal(const Locus& at, const NormalMap& map, Vec3f object_normal) 
   return length_squared(n) > 0 ? normalize(n) : object_normal;
 }
 
-// A shading normal about which the viewer's reflection would go into the surface is bent towards the geometric normal
-// until the reflection just leaves it.
-// Source: Keller et al., The Iray Light Transport Simulation and Rendering System, 2017, appendix A.3.
+// A shading normal about which the viewer's reflection would go into the surface, or that points into it itself, is
+// bent towards the geometric normal until the reflection just leaves it. Source: Keller et al., The Iray Light
+// Transport Simulation and Rendering System, 2017, appendix A.3.
 Vec3f bend_for_reflection(Vec3f normal, Vec3f to_viewer, Vec3f geometric_normal) {
   constexpr float kLeast = 0.01F;  // cosine of a reflection, unless the viewer's own is about as small
   const float viewer_z = dot(to_viewer, geometric_normal);
   const float least = std::min(kLeast, 0.9F * viewer_z);
   const float normal_z = dot(normal, geometric_normal);
-  if (2 * dot(normal, to_viewer) * normal_z - viewer_z >= least) return normal;
+  if (normal_z > 0 && 2 * dot(normal, to_viewer) * normal_z - viewer_z >= least) return normal;
   // In the plane of both normals: n(φ) = cosφ Z + sinφ X reflects the viewer to the height A cos(2φ − δ).
   const Vec3f across = normal - normal_z * geometric_normal;
   if (!(length_squared(across) > 1e-12F)) return geometric_normal;
@@ -177,6 +177,13 @@ SurfaceLayers layers_at(const Locus& at, const MaterialLayers& m) {
   layers.sheen_color = scaled(at, m.sheen_color, m.sheen_color_texture);
   layers.sheen_roughness = scaled(at, m.sheen_roughness, m.sheen_roughness_texture, &Vec4f::w);
   return layers;
+}
+
+// What the polish lets out of the light that is emitted below it.
+float below_clearcoat(const SurfaceLayers& layers, Vec3f to_viewer) {
+  constexpr float kF0 = 0.04F;
+  const float fresnel = kF0 + (1 - kF0) * schlick_weight(std::abs(dot(layers.clearcoat_normal, to_viewer)));
+  return 1 - layers.clearcoat * fresnel;
 }
 
 using Corners = std::array<Vec3f, 3>;
@@ -276,14 +283,13 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const Vec3f to_viewer = -normalize(ray.direction);
   const ShadingNormals normals =
       shading_normals(at, {material.normal_texture, material.normal_scale}, instance.world_from_object, hit);
-  // The side is the geometry's to decide: an interpolated normal may lean over the horizon of its triangle.
-  const auto on_side = [&](Vec3f n) { return dot(n, point.geometric_normal) < 0 ? -n : n; };
-  point.smooth_normal = on_side(normals.smooth);
-  point.shading_normal = bend_for_reflection(on_side(normals.mapped), to_viewer, point.geometric_normal);
+  // The side is the geometry's to decide, and of mapped normals that of the smooth one: they may lean over the horizon.
+  const float side = dot(normals.smooth, point.geometric_normal) < 0 ? -1.0F : 1.0F;
+  point.smooth_normal = side * normals.smooth;
+  point.shading_normal = bend_for_reflection(side * normals.mapped, to_viewer, point.geometric_normal);
   point.geometric_horizon = material.geometric_horizon;
   if (!material.geometric_horizon && dot(point.smooth_normal, point.geometric_normal) < kFlat) {
-    const float smooth_side = dot(normals.smooth, point.geometric_normal) < 0 ? -1.0F : 1.0F;
-    point.lift = transform_direction(instance.world_from_object, lift_to_smooth(at, smooth_side));
+    point.lift = transform_direction(instance.world_from_object, lift_to_smooth(at, side));
   }
   point.base_color = base_color(at, material);
   point.lambert = material.lambert;
@@ -298,7 +304,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
     const NormalMap coat{material.layers->clearcoat_normal_texture, material.layers->clearcoat_normal_scale};
     const Vec3f normal =
         coat.use.texture < 0 ? normals.smooth : shading_normals(at, coat, instance.world_from_object, hit).mapped;
-    point.layers->clearcoat_normal = bend_for_reflection(on_side(normal), to_viewer, point.geometric_normal);
+    point.layers->clearcoat_normal = bend_for_reflection(side * normal, to_viewer, point.geometric_normal);
+    if (!material.unlit) point.emission *= below_clearcoat(*point.layers, to_viewer);
   }
   return point;
 }

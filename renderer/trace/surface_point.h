@@ -63,7 +63,7 @@ bool surface_is_clear(const Scene& scene, const Mesh& mesh, std::uint32_t triang
 // Luminance of what a clear surface lets through there, about; `cosine`: of the ray with the triangle's normal.
 float clear_luminance(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, Vec2f uv, float cosine);
 
-// Emission of a mesh at barycentric u, v of a triangle, cd/m².
+// Emission of a mesh at barycentric u, v of a triangle, cd/m², below a clearcoat.
 Vec3f surface_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
 }  // namespace chiaro::renderer

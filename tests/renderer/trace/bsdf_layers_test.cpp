@@ -162,6 +162,17 @@ TEST(BsdfLayers, WhiteSheetsLoseNothing) {
   }
 }
 
+// Rough ones too, as bright as polished ones: what facets scatter more than once comes out in the end.
+TEST(BsdfLayers, WhiteMetalsLoseNothing) {
+  for (const float roughness : {0.1F, 0.3F, 0.6F, 1.0F}) {
+    const SurfacePoint point = layered_point({1, 1, 1}, 1, roughness);
+    for (const Vec3f& viewer : kViewers) {
+      EXPECT_NEAR(sampled(Bsdf(point), viewer, 1 << 14).albedo, 1, 0.02) << roughness << ' ' << viewer.z;
+    }
+    EXPECT_NEAR(hemispherical_albedo(point).y, 1, 0.01F) << roughness;
+  }
+}
+
 // What a smooth boundary reflects and lets through are Fresnel's shares.
 TEST(BsdfLayers, SmoothSolidsFollowFresnelAndSnell) {
   for (const bool front : {true, false}) {

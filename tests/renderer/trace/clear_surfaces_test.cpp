@@ -152,6 +152,18 @@ TEST(ClearSurfaces, GlassIsInvisibleInAFurnace) {
   }
 }
 
+// Nor are white solids that let a part of the light in: what meets the other part from inside stays in there.
+TEST(ClearSurfaces, PartlyTransmissiveSolidsLoseNothing) {
+  for (const float transmission : {0.5F, 0.9F}) {
+    Scene scene;
+    Material material = glass(true, 0);
+    material.layers->transmission = transmission;
+    add_mesh(scene, test::sphere({0, 0, 0}, 1, 24), material, "ball");
+    add_mesh(scene, test::sphere({0, 0, 0}, 9, 24, true), test::lambert({0, 0, 0}, {1, 1, 1}), "sky");
+    EXPECT_NEAR(frame_mean(scene, {0, 0, 4}, 4096), 1, 0.02) << transmission;
+  }
+}
+
 // Through the middle of an absorbing ball, seen from afar: (1 − R)² e^(−2 a r) / (1 − R² e^(−4 a r)) of what is behind,
 // and R (1 + …) of what is in front, of which both glow alike.
 TEST(ClearSurfaces, AnAbsorbingBallIsAsDarkAsItsDiameterMakesIt) {

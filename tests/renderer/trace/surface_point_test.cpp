@@ -96,6 +96,37 @@ TEST(SurfacePoint, UpInANormalMapIsAgainstGrowingV) {
   expect_near(seen(scene, {0.3F, 0, 0.6F}, {0, -1, 0}).shading_normal, {0, 0.8F, -0.6F}, 0.01F);
 }
 
+// As far over its triangle's horizon as maps and vertex normals may lean a normal, it stays on the side that it leans
+// to.
+TEST(SurfacePoint, NormalsBeyondTheHorizonLeanTheSameWay) {
+  for (const float tilt : {0.2F, 0.6F, 0.9F}) {
+    Scene scene = square_scene(normal_mapped(1), {one_texel(250, 128, 150)});  // 80 degrees to +X
+    for (Vec3f& n : scene.meshes[0].normals) n = {std::sin(tilt), std::cos(tilt), 0};
+    for (const Vec3f direction : {Vec3f{0, -1, 0}, Vec3f{0.5F, -1, 0}, Vec3f{-0.5F, -1, 0}}) {
+      const SurfacePoint point = seen(scene, {0.3F, 0, 0.6F}, direction);
+      EXPECT_GT(point.shading_normal.x, 0.2F) << tilt << ' ' << direction.x;
+      EXPECT_GT(point.shading_normal.y, 0) << tilt << ' ' << direction.x;
+    }
+    EXPECT_LT(seen(scene, {0.3F, 0, 0.6F}, {0, 1, 0}).shading_normal.x, -0.2F) << tilt;
+  }
+}
+
+// KHR_materials_clearcoat: emission × (1 − clearcoat · (0.04 + 0.96 (1 − cosθ)⁵)).
+TEST(SurfacePoint, AClearcoatDarkensWhatIsEmittedBelowIt) {
+  Material material = test::lambert({0, 0, 0}, {1, 2, 3});
+  material.lambert = false;
+  material.layers.emplace();
+  for (const float clearcoat : {0.0F, 0.5F, 1.0F}) {
+    material.layers->clearcoat = clearcoat;
+    const Scene scene = square_scene(material);
+    for (const float angle : {0.0F, 1.0F, 1.4F}) {
+      const float left = 1 - clearcoat * (0.04F + 0.96F * std::pow(1 - std::cos(angle), 5.0F));
+      const Vec3f direction{std::sin(angle), -std::cos(angle), 0};
+      expect_near(seen(scene, {0.3F, 0, 0.6F}, direction).emission, left * Vec3f{1, 2, 3}, 1e-3F);
+    }
+  }
+}
+
 TEST(SurfacePoint, NormalScaleFlattensTheMap) {
   const Scene scene = square_scene(normal_mapped(0.5F), {kLeaning});
   expect_near(seen(scene, {0.3F, 0, 0.6F}, {0, -1, 0}).shading_normal, normalize(Vec3f{0.3F, 0.8F, 0}), 0.01F);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/sampler.h"
+#include "renderer/image/mip_maps.h"
 #include "tests/support/code_scenes.h"
 
 namespace chiaro::renderer {
@@ -29,6 +30,63 @@ TEST(TraceIllumination, PointLightOverPlaneIsIntensityCosineOverPiDistanceSquare
     EXPECT_NEAR(result.value[i].x, expected, 1e-5 * expected);
     EXPECT_NEAR(result.value[i].y, 2 * expected, 2e-5 * expected);
     EXPECT_EQ(result.standard_error[i].x, 0);
+  }
+}
+
+// What a quad sends to a wall that faces it, for each texel white, and for a white island in a black atlas: filters
+// know nothing of the island's border, so that scattered rays look textures up as they are.
+TEST(TraceIllumination, AnIslandOfAnAtlasIsAsBrightAsAPlainSurface) {
+  constexpr int kAtlas = 256, kIsland = 64;
+  Texture atlas{"", kAtlas, kAtlas, std::vector<std::uint8_t>(std::size_t(4 * kAtlas * kAtlas), 0)};
+  for (int y = 0; y < kAtlas; ++y) {
+    for (int x = 0; x < kAtlas; ++x) {
+      for (int c = 0; c < 4; ++c) {
+        const bool inside = x < kIsland + 8 && y < kIsland + 8;
+        atlas.rgba[std::size_t(4 * (kAtlas * y + x) + c)] = inside || c == 3 ? 255 : 0;
+      }
+    }
+  }
+  const auto lit = [&](bool textured) {
+    Scene scene;
+    Mesh quad = rectangle({-0.1F, 0, 0.1F}, {0.2F, 0, 0}, {0, 0, -0.2F});
+    for (const Vec3f p : quad.positions) {
+      quad.uv[0].push_back(
+          {(4 + kIsland * (p.x + 0.1F) / 0.2F) / kAtlas, (4 + kIsland * (p.z + 0.1F) / 0.2F) / kAtlas});
+    }
+    Material material = lambert({1, 1, 1});
+    if (textured) material.base_color_texture.texture = 0;
+    add_mesh(scene, quad, material, "quad");
+    scene.textures.push_back(atlas);
+    make_mip_maps(scene.textures[0], {.srgb = true});
+    const RayTracer tracer(scene);
+    const std::vector<SurfaceSample> wall{{{0, 2, 0}, {0, -1, 0}}};
+    return trace_illumination(tracer, wall, {PointLight{"", {2, 2, 0}, {100, 100, 100}}},
+                              {.samples = 1 << 14, .bounces = 1})
+        .value[0]
+        .x;
+  };
+  EXPECT_NEAR(lit(true) / lit(false), 1, 1e-3F);
+}
+
+// A small panel seen at an angle, polished or not: light samples and scattered rays find the same.
+TEST(TraceIllumination, PolishedLampsGiveWhatTheirCoatLetsOut) {
+  const auto lit = [](float clearcoat, Vec3f at) {
+    Scene scene;
+    Material material = lambert({0, 0, 0}, {1, 1, 1});
+    material.lambert = false;
+    material.layers.emplace();
+    material.layers->clearcoat = clearcoat;
+    add_mesh(scene, rectangle({-0.05F, 0, -0.05F}, {0, 0, 0.1F}, {0.1F, 0, 0}), material, "panel");
+    const RayTracer tracer(scene);
+    return trace_illumination(tracer, std::vector<SurfaceSample>{{at, normalize(-at)}}, {},
+                              {.samples = 1 << 14, .bounces = 0})
+        .value[0]
+        .x;
+  };
+  for (const float angle : {0.1F, 1.0F, 1.4F}) {
+    const Vec3f at{3 * std::sin(angle), 3 * std::cos(angle), 0};
+    const float left = 1 - (0.04F + 0.96F * std::pow(1 - std::cos(angle), 5.0F));
+    EXPECT_NEAR(lit(1, at) / lit(0, at), left, 0.02F) << angle;
   }
 }
 
