@@ -13,6 +13,7 @@
 #include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/session.h"
+#include "cli/target_options.h"
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "renderer/core/counted.h"
@@ -29,6 +30,7 @@ struct CompareCommand {
   std::string a, b, output;
   std::optional<double> fail_above, fail_above_flip;
   bool resize = false;
+  float target_scale = 1;
   FrameComparisonOptions frames;
 };
 
@@ -82,10 +84,13 @@ void refuse_options_of_frames(const CompareCommand& options) {
 
 int compare_two_targets(const CompareCommand& options, Session& session) {
   refuse_options_of_frames(options);
-  const inverse::Target a = inverse::load_illumination(options.a);
-  const inverse::Target b = inverse::load_target(options.b);
+  const inverse::Target a = inverse::load_illumination(options.a, options.target_scale);
+  const inverse::Target b = inverse::load_target(options.b, options.target_scale);
   session.warn(a.warnings);
   session.warn(b.warnings);
+  if (!a.has_scaled_colors && !b.has_scaled_colors) {
+    session.warn(given_for_nothing(*options.command, {"--target-scale"}, "with _ILLUMINATION, which is in cd/m²"));
+  }
   session.warn(given_for_nothing(
       *options.command, {"--ocio", "--display", "--view", "--look", "--exposure", "--no-flip", "--pixels-per-degree"},
       "between two targets"));
@@ -99,6 +104,7 @@ int compare_two_targets(const CompareCommand& options, Session& session) {
 
 int compare_two_frames(const CompareCommand& options, Session& session) {
   session.require_outputs({options.output});
+  session.warn(given_for_nothing(*options.command, {"--target-scale"}, "between two frames"));
   if (!options.output.empty()) require_view(options.frames.view);
   const ComparedFrames frames = load_compared_frames(options.a, options.b, options.frames.view, options.resize);
   session.stop_if_interrupted();
@@ -151,6 +157,7 @@ CommandRun add_compare(CLI::App& command) {
       {"--crop", "[NAME=]x0,y0,x1,y1",
        "Figures of these pixels too, up to before x1 and y1; limits then hold there; may be repeated"},
       [options = options.get()](const std::string& text) { options->frames.regions.push_back(parse_region(text)); });
+  add_target_scale_option(command, options->target_scale);
   add_flag(command, "--resize", options->resize, "Resize A to the size of B where they differ");
   add_number(command, {"--pixels-per-degree", "P", "Of the viewer's field, for FLIP (default 67.02)"},
              options->frames.pixels_per_degree, kPixelsPerDegreeRange);

@@ -9,6 +9,7 @@
 #include "cli/illumination_view.h"
 #include "cli/program.h"
 #include "cli/scene_loading.h"
+#include "cli/target_options.h"
 #include "cli/text_output.h"
 #include "cli/transport_options.h"
 #include "inverse/target/illumination_picture.h"
@@ -24,6 +25,7 @@ struct PaintCommand {
   IlluminationPictureOptions picture;
   std::string scene, strokes, from, output;
   std::optional<float> unpainted_weight;
+  float target_scale = 1;  // of --from
   const CLI::App* command = nullptr;
 };
 
@@ -37,10 +39,7 @@ inverse::Target make_base(const PaintCommand& options, const LoadedStage& stage,
   const renderer::Lights lights =
       choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   if (!options.from.empty()) {
-    inverse::Target base = inverse::load_target(options.from);
-    place_on_scene(*stage.tracer, base.receivers, options.from);
-    session.warn(base.warnings);
-    return base;
+    return load_target_on(stage, options.from, options.target_scale, session);
   }
   if (strokes.base == inverse::StrokeBase::kBlack)
     return black_target(choose_receivers(*stage.tracer, options.surface, session));
@@ -106,6 +105,7 @@ void warn_of_idle_light(const PaintCommand& options, const char* why, Session& s
 void warn_of_idle_options(const PaintCommand& options, const inverse::Strokes& strokes, Session& session) {
   session.warn(idle_options(*options.command, {"--camera", "--width", "--height", "--hide-backs"}, {"--picture"}));
   session.warn(idle_view_options(*options.command, {"--picture"}, {"--environment"}));
+  session.warn(idle_options(*options.command, {"--target-scale"}, {"--from"}));
   if (!options.from.empty()) {
     session.warn(
         given_for_nothing(*options.command, {"--on", "--max-edge"}, "with --from, which has receivers of its own"));
@@ -148,6 +148,7 @@ CommandRun add_paint(CLI::App& command) {
   add_input(command, {"--strokes", "S.json", "The brush strokes"}, options->strokes);
   add_input_file(command, {"--from", "T.glb", "Start from this target instead of the base the strokes name"},
                  options->from);
+  add_target_scale_option(command, options->target_scale);
   add_output(command, {"-o,--output", "T2.glb", "The painted target"}, options->output, {".glb", ".gltf"});
   add_number(
       command,

@@ -82,7 +82,12 @@ void add_attributes(renderer::Attributes& attributes, const renderer::Frame& fra
   if (options.box_filter) attributes.emplace_back("chiaro:filter", std::string("box"));
   if (frame.dropped_samples > 0) attributes.emplace_back("chiaro:dropped_samples", float(frame.dropped_samples));
   if (frame.interrupted) attributes.emplace_back("chiaro:interrupted", 1);
-  if (options.lens.f_number) attributes.emplace_back("aperture", *options.lens.f_number);
+  if (options.lens.f_number) {
+    attributes.emplace_back("aperture", *options.lens.f_number);
+    attributes.emplace_back("chiaro:sensor_height", options.lens.sensor_height);
+    attributes.emplace_back("chiaro:blades", options.lens.blades);
+    if (options.lens.focal_length) attributes.emplace_back("chiaro:focal_length", *options.lens.focal_length);
+  }
   if (frame.lens.radius > 0) attributes.emplace_back("focus", frame.lens.focus_distance);
   if (options.lens.shutter) {
     attributes.emplace_back("expTime", *options.lens.shutter);

@@ -1,10 +1,13 @@
 #include "cli/program.h"
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
@@ -67,8 +70,20 @@ int fail(const std::string& message) {
   return kFailed;
 }
 
+// CLI11 would ask for a subcommand and not say what is wrong with the word.
+void require_known_command(const CLI::App& program, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+  throw UsageError(fmt::format("'{}' is no command (expected one of: {})", argv[1], fmt::join(names, ", ")));
+}
+
 int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, const char* const* argv) {
   try {
+    require_known_command(program, argc, argv);
     program.parse(argc, argv);
     return run_parsed_command(commands);
   } catch (const CLI::Success& help_or_version) {

@@ -31,6 +31,13 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
   return stage;
 }
 
+void require_rereadable(const std::string& scene) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(scene, unknown) || std::filesystem::is_regular_file(scene, unknown)) return;
+  throw renderer::Error(
+      {scene, "", "is no file that can be read twice", "a scene file: the lights found are saved in a copy of it"});
+}
+
 void require_unchanged(const LoadedStage& stage) {
   const std::string& file = stage.scene->path;
   if (version_of(file) == stage.file) return;

@@ -28,6 +28,9 @@ struct LoadedStage {
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session);
 
+// Error for a pipe or a device: what is written of the scene is read once more.
+void require_rereadable(const std::string& scene);
+
 // Error where the file is another than was loaded: what is made of it then is not of this scene.
 void require_unchanged(const LoadedStage& stage);
 

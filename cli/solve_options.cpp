@@ -51,10 +51,11 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
             solve.important_vertices, {1, 10'000'000});
   add_parsed(command, {"--importance-weights", "w1,w2", "Of geometry and illumination (default 1,1)"},
              [&solve](const std::string& text) { parse_importance_weights(text, solve); });
-  add_number(
-      command,
-      {"--weak-light", "W", fmt::format("Fraction below which a light is deleted (default {})", solve.weak_light)},
-      solve.weak_light, kZeroToOne);
+  add_number(command,
+             {"--weak-light", "W",
+              fmt::format("Part of the target below which the search drops a light of its grid (default {})",
+                          solve.weak_light)},
+             solve.weak_light, kZeroToOne);
   add_number(command,
              {"--time-limit", "SECONDS", "Stop searching then, with what is found (without the time of the bake)"},
              solve.time_limit, kPositive);

@@ -178,16 +178,7 @@ class TargetLoading {
   }
 
  private:
-  inverse::Target from_file() const {
-    inverse::Target target = inverse::load_target(choices_.file, choices_.scale);
-    place_on_scene(*stage_.tracer, target.receivers, choices_.file);
-    session_.warn(target.warnings);
-    if (choices_.scale != 1 && !target.has_scaled_colors) {
-      session_.warn(
-          fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", choices_.file));
-    }
-    return target;
-  }
+  inverse::Target from_file() const { return load_target_on(stage_, choices_.file, choices_.scale, session_); }
 
   void read_picture(const NamedFile& image) {
     const renderer::Camera camera = choose_camera(*stage_.scene, image.name, session_);
@@ -258,7 +249,7 @@ class TargetLoading {
 
 void add_target_options(CLI::App& command, TargetChoices& choices) {
   add_input_file(command, {"--target", "T.glb", "The painted illumination"}, choices.file);
-  add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, choices.scale, kPositive);
+  add_target_scale_option(command, choices.scale);
   add_picture_options(command, choices);
   add_lightmap_options(command, choices);
   add_surface_options(command, choices.surface);
@@ -281,14 +272,28 @@ void require_a_target(const TargetChoices& choices) {
 
 std::vector<std::string> idle_target_options(const CLI::App& command) {
   const std::vector<std::string> pictures{"--target-image", "--target-lightmap"};
-  std::vector<std::string> warnings =
-      idle_options(command, {"--image-content", "--image-space", "--keep-white"}, pictures);
-  for (const auto& [option, needed] :
-       {std::pair{"--lightmap-uv", "--target-lightmap"}, {"--target-scale", "--target"}}) {
+  std::vector<std::string> warnings = idle_options(command, {"--image-space", "--keep-white"}, pictures);
+  for (const auto& [option, needed] : {std::pair{"--lightmap-uv", "--target-lightmap"},
+                                       {"--target-scale", "--target"},
+                                       {"--image-content", "--target-image"}}) {
     const std::vector<std::string> idle = idle_options(command, {option}, {needed});
     warnings.insert(warnings.end(), idle.begin(), idle.end());
   }
   return warnings;
+}
+
+void add_target_scale_option(CLI::App& command, float& scale) {
+  add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, scale, kPositive);
+}
+
+inverse::Target load_target_on(const LoadedStage& stage, const std::string& file, float scale, Session& session) {
+  inverse::Target target = inverse::load_target(file, scale);
+  place_on_scene(*stage.tracer, target.receivers, file, session);
+  session.warn(target.warnings);
+  if (scale != 1 && !target.has_scaled_colors) {
+    session.warn(fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", file));
+  }
+  return target;
 }
 
 bool is_target_file_alone(const TargetChoices& choices) { return choices.images.empty() && choices.lightmaps.empty(); }

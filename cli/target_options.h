@@ -51,4 +51,9 @@ struct WantedTarget {
 // Error where a file is of another scene, or where the pictures show nothing that could be wanted.
 WantedTarget load_wanted_target(const LoadedStage& stage, const TargetChoices& choices, Session& session);
 
+void add_target_scale_option(CLI::App& command, float& scale);
+
+// A target file, its samples placed on the scene. Warnings are passed on, and of a scale that does nothing with it.
+inverse::Target load_target_on(const LoadedStage& stage, const std::string& file, float scale, Session& session);
+
 }  // namespace chiaro::cli

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaxSamples = 1 << 24;
 constexpr int kMaxBounces = 10000;
-constexpr double kLeastFractionOnSurface = 0.5;
+constexpr double kLeastFractionOnSurface = 0.5, kNearlyAllOnSurface = 0.99;
 
 }  // namespace
 
@@ -84,12 +84,13 @@ inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const Sur
   }
   const renderer::VertexMesh mesh = renderer::load_vertex_mesh(options.on);
   inverse::Receivers receivers = inverse::receivers_from_mesh(mesh);
-  place_on_scene(tracer, receivers, options.on);
+  place_on_scene(tracer, receivers, options.on, session);
   for (const std::string& warning : mesh.warnings) session.warn(fmt::format("{}: {}", options.on, warning));
   return receivers;
 }
 
-void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& receivers, const std::string& file) {
+void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& receivers, const std::string& file,
+                    Session& session) {
   if (receivers.size() == 0) throw renderer::Error({file, "", "has no vertices", "receivers"});
   const double fraction = inverse::fraction_on_surface(tracer, receivers);
   if (fraction < kLeastFractionOnSurface) {
@@ -97,6 +98,13 @@ void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& recei
                            fmt::format("belong to another scene: {:.0f} % lie on the surfaces of {}", 100 * fraction,
                                        tracer.scene().path),
                            "points on the scene's surfaces"});
+  }
+  // Rays pass the holes of masked surfaces, where vertices may well lie.
+  const bool has_holes = renderer::any_drawn_material(
+      tracer.scene(), [](const renderer::Material& m) { return m.alpha_mode != renderer::AlphaMode::kOpaque; });
+  if (fraction < kNearlyAllOnSurface && !has_holes) {
+    session.warn(fmt::format("{}: {:.0f} % of the vertices lie on no surface of {}: was the scene changed since?", file,
+                             100 * (1 - fraction), tracer.scene().path));
   }
   inverse::place_samples_on(tracer, receivers);
 }

@@ -54,7 +54,9 @@ void add_max_edge_option(CLI::App& command, float& max_edge);
 // to another scene.
 inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options, Session& session);
 
-// Places the samples of the receivers of `file` on the scene's surfaces. Error where fewer than half lie on any.
-void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& receivers, const std::string& file);
+// Places the samples of the receivers of `file` on the scene's surfaces. Warns where some lie on none, and throws an
+// Error where fewer than half lie on any.
+void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& receivers, const std::string& file,
+                    Session& session);
 
 }  // namespace chiaro::cli

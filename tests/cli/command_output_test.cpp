@@ -214,6 +214,40 @@ TEST(CliSolve, AScaleOfWhatIsNotScaledIsTold) {
   expect_told(solved, "--keep-white: does nothing without --target-image or --target-lightmap");
 }
 
+// Of three triangles one above the other the first lies on the floor.
+TEST(CliIlluminate, ReceiversOffTheSurfacesAreTold) {
+  const TemporaryFolder folder;
+  const std::string receivers = write_foreign_mesh(folder, {{"floor", {}}, {"shelf", {}}}).string();
+  const Outcome told = run_with({"illuminate", kScenes + "cornell.glb", "--on", receivers, "-o", folder / "lit.glb",
+                                 "--samples", "1", "--bounces", "0"});
+  EXPECT_EQ(told.exit_code, kDone) << told.standard_error;
+  expect_told(told, receivers + ": 50 % of the vertices lie on no surface of " + kScenes +
+                        "cornell.glb: was the scene changed since?");
+}
+
+TEST(CliCompare, VertexColoursMayBeScaled) {
+  const TemporaryFolder colours, candela;
+  const std::string dim = write_foreign_mesh(colours, {{"a", {{"COLOR_0", std::vector<float>(9, 1)}}}}).string();
+  const std::string bright =
+      write_foreign_mesh(candela, {{"a", {{"_ILLUMINATION", std::vector<float>(9, 5)}}}}).string();
+  const auto error = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"compare", dim, bright, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(run_with(arguments).standard_output).at("relative_l2").get<double>();
+  };
+  EXPECT_NEAR(error({}), 0.8, 1e-6);
+  EXPECT_NEAR(error({"--target-scale", "5"}), 0, 1e-6);
+  expect_told(run_with({"compare", bright, bright, "--target-scale", "5"}),
+              "--target-scale: does nothing with _ILLUMINATION, which is in cd/m²");
+}
+
+TEST(CliProgram, NamesTheWordThatIsNoCommand) {
+  const Outcome outcome = run_with({"slove", "room.glb"});
+  EXPECT_EQ(outcome.exit_code, kWrongUsage);
+  EXPECT_NE(outcome.standard_error.find("'slove' is no command (expected one of: "), std::string::npos)
+      << outcome.standard_error;
+}
+
 // Caches of the box, with receivers of their own.
 struct Baked {
   Outcome outcome;
