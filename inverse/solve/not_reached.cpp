@@ -117,17 +117,18 @@ bool at_border_of(const renderer::Box3f& box, Vec3f position) {
   return box.contains(position) && double(min_component(inside)) <= kAtBorder * double(box.diagonal());
 }
 
-bool at_border(const SolveProblem& problem, const SolveResult& result) {
+bool at_border(const SolveProblem& problem, const renderer::Box3f& region, const FoundLight& found) {
+  const auto* light = std::get_if<renderer::PointLight>(&found.light);
+  if (light == nullptr) return false;
   std::vector<renderer::Box3f> boxes = problem.places.boxes;
-  if (boxes.empty() && problem.places.mounts.empty()) boxes = {result.region};
-  for (const FoundLight& found : result.lights) {
-    const auto* light = std::get_if<renderer::PointLight>(&found.light);
-    const auto is_at = [&](const renderer::Box3f& box) {
-      return light != nullptr && at_border_of(box, light->position);
-    };
-    if (std::any_of(boxes.begin(), boxes.end(), is_at)) return true;
-  }
-  return false;
+  if (boxes.empty() && problem.places.mounts.empty()) boxes = {region};
+  return std::any_of(boxes.begin(), boxes.end(),
+                     [&](const renderer::Box3f& box) { return at_border_of(box, light->position); });
+}
+
+bool any_at_border(const SolveProblem& problem, const SolveResult& result) {
+  return std::any_of(result.lights.begin(), result.lights.end(),
+                     [&](const FoundLight& found) { return at_border(problem, result.region, found); });
 }
 
 constexpr const char* kWithoutConstraints = "without the constraints lights may come closer";
@@ -172,12 +173,20 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
   }
   if (options.method == SolveMethod::kThesis) return "the joint method, or another threshold, may come closer";
   if (any_at_limit(problem, result)) return kWithoutConstraints;
-  if (at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";
+  if (any_at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";
   if (ruled || !problem.places.mounts.empty() || problem.places.surface_distance > 0 ||
       problem.places.light_distance > 0) {
     return kWithoutConstraints;
   }
   return "no more lights from anywhere in the region explain it: paint it otherwise, or give it less weight";
+}
+
+void leave_unknown_at_border(const SolveProblem& problem, SolveResult& result) {
+  if (result.not_reached.empty()) return;
+  const Vec3f unknown{renderer::kInfinity, renderer::kInfinity, renderer::kInfinity};
+  for (FoundLight& found : result.lights) {
+    if (at_border(problem, result.region, found)) found.position_interval = found.intensity_interval = unknown;
+  }
 }
 
 }  // namespace chiaro::inverse

@@ -16,6 +16,7 @@
 #include "inverse/solve/fit_in_place.h"
 #include "inverse/solve/free_light_names.h"
 #include "inverse/solve/light_intervals.h"
+#include "inverse/solve/not_reached.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/region_search.h"
 #include "inverse/solve/report.h"
@@ -36,6 +37,7 @@ constexpr double kUnlit = 1e-6;                 // of the target's squared illum
 constexpr std::size_t kMoreVertices = 3;        // times as many, where they misled the search
 constexpr double kOnSurface = 0.5;              // of a target's receivers must lie on the scene
 constexpr std::size_t kReceiversPerLight = 40;  // at least, for a trace to tell where lights are and to judge them
+constexpr double kAsGoodAsDark = 1e-4;          // of all lights: what float rounding may ask for
 constexpr double kLights = 0.05;  // of what 1 cd gives as far away as the scene is large, at receivers on average
 
 void check_target(const SolveProblem& problem) {
@@ -78,7 +80,8 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   nothing_lit(problem);
 }
 
-// Brightest contribution first. One that the last descent left dark is none, unless so many were asked for.
+// Brightest contribution first. One that the last descent left dark, or as good as, is none, unless so many were asked
+// for.
 void report_lights(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
                    const LightsByTrace& by_trace, SolveResult& result) {
   const LightResponse& response = searched.response;
@@ -94,7 +97,9 @@ void report_lights(const SolveProblem& problem, const SolveOptions& options, con
   const double total = std::accumulate(norm.begin(), norm.end(), 0.0);
   if (!(total > 0)) all_dark(problem, response, lights);
   std::vector<std::size_t> order = all_indices(lights.size());
-  if (options.exact_lights == 0) std::erase_if(order, [&](std::size_t j) { return is_dark(lights[j]); });
+  if (options.exact_lights == 0) {
+    std::erase_if(order, [&](std::size_t j) { return is_dark(lights[j]) || norm[j] < kAsGoodAsDark * total; });
+  }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   const std::vector<std::string> names = free_light_names(problem, order.size());
   std::vector<int> number(lights.size());
@@ -333,6 +338,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.region = searched->transport.cache.grid.region;
   result.target_noise = target_noise(problem.target);
   judge(problem, options, std::move(by_trace.traced), result);
+  leave_unknown_at_border(problem, result);
   result.stages = clock.stages();
   if (!options.report_folder.empty()) {
     write_report({problem.tracer.scene(), problem.target, importance, searched->transport.cache.grid,

@@ -389,9 +389,13 @@ TEST(Solve, FindsLightsOutsideTheBoundsOfAnOpenScene) {
   EXPECT_FALSE(open.tracer().bounds().contains(Vec3f{-3, 4, 2}));
   // Where the user says how far it reaches, it reaches no farther.
   problem.grid.region = default_region(open.tracer());
-  for (const Vector3d& p : positions_of(solve(problem, quick()))) {
-    EXPECT_TRUE(problem.grid.region->contains(to_vec3f(p)));
-  }
+  const SolveResult within = solve(problem, quick());
+  for (const Vector3d& p : positions_of(within)) EXPECT_TRUE(problem.grid.region->contains(to_vec3f(p)));
+  // And how far off lights are that it holds nobody knows.
+  EXPECT_FALSE(within.not_reached.empty());
+  EXPECT_TRUE(std::any_of(within.lights.begin(), within.lights.end(), [](const FoundLight& found) {
+    return std::isinf(found.position_interval.x) && std::isinf(found.intensity_interval.x);
+  }));
 }
 
 // What it shines is a small part of all light, and of what is wanted of it all.
