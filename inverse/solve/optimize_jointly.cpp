@@ -11,6 +11,7 @@
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/polish_lights.h"
+#include "inverse/solve/sets_without_one.h"
 #include "inverse/transport/eigen_vectors.h"
 
 namespace chiaro::inverse {
@@ -55,7 +56,7 @@ BegunSearch begun_with(const JointLights& found) {
   return begun;
 }
 
-// beside_surfaces: in all of them.
+// beside_surfaces: in all of them but those of fewer lights, which are what is left as the least missed go.
 std::vector<LightSet> error_curve_of(const LightResponse& response, const Observations& judged,
                                      const LightEstimates& beside_surfaces, const LightCountResult& count) {
   std::vector<LightSet> curve;
@@ -65,6 +66,10 @@ std::vector<LightSet> error_curve_of(const LightResponse& response, const Observ
   add(beside_surfaces);
   for (const LightEstimates& set : count.sets) {
     if (!set.empty()) add(joined(beside_surfaces, set));
+  }
+  while (!curve.empty() && curve.front().lights.size() > 1) {
+    const auto fewer = sets_without_one(response, judged, light_estimates(curve.front().lights), 1);
+    curve.insert(curve.begin(), set_of(fewer[0], relative_error(judged, illumination_of(response, fewer[0]))));
   }
   return curve;
 }

@@ -189,6 +189,18 @@ TEST(Solve, FindsALightBesideASurfaceAndOneInTheRoom) {
   EXPECT_EQ(solve(problem_of(corner, target, 0), one).lights.size(), 1U);
 }
 
+TEST(Solve, TheCurveHasFewerLightsThanStandBesideSurfaces) {
+  const PaintedCorner corner;
+  const LightEstimate one = light_beside_the_floor(corner.receivers());
+  LightEstimate other = one;
+  other.position += Vector3d(1.2, 0, -0.4);
+  const SolveResult result = solve(problem_of(corner, corner.target({one, other}, 0), 0), quick());
+  ASSERT_EQ(result.lights.size(), 2U);
+  ASSERT_GE(result.error_curve.size(), 2U);
+  EXPECT_EQ(result.error_curve[0].lights.size(), 1U);
+  EXPECT_GT(result.error_curve[0].relative_l2, 2 * result.error_curve[1].relative_l2);
+}
+
 // Every place in the region lights the surfaces: it is not to blame.
 TEST(Solve, SaysWhereLightsHadBetterBeDark) {
   const PaintedCorner corner;
