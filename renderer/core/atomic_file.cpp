@@ -93,7 +93,7 @@ class OpenFile {
 
 [[noreturn]] void cannot_read(const std::filesystem::path& path, int code) {
   if (code == EINTR) throw Interruption();
-  if (code == ENOENT) throw Error({path.string(), "", "no such file", ""});
+  if (code == ENOENT) throw Error({path.string(), "", "no such file", "an existing file"});
   throw Error({path.string(), "", fmt::format("cannot be read: {}", std::strerror(code)), ""});
 }
 

@@ -119,7 +119,7 @@ OpenImage open(const std::filesystem::path& path) {
                                        image.reader.get());
   if (!image.input) {
     const std::string reason = first_line(OIIO::geterror());
-    throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), ""});
+    throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), "an image"});
   }
   if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);
   return image;

@@ -14,7 +14,7 @@ namespace chiaro::renderer {
 inline void require_file(const std::filesystem::path& path, const char* expected) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) return;
-  if (!std::filesystem::exists(path, ignored)) throw Error({path.string(), "", "no such file", ""});
+  if (!std::filesystem::exists(path, ignored)) throw Error({path.string(), "", "no such file", "an existing file"});
   throw Error({path.string(), "", "is not a file", expected});
 }
 

@@ -139,7 +139,7 @@ class AnimationReader {
     const auto finite = [](float v) { return std::isfinite(v); };
     if (!std::all_of(keys.values.begin(), keys.values.end(), finite) ||
         !std::all_of(keys.times.begin(), keys.times.end(), finite)) {
-      fail(document_, place, "its keys are not finite");
+      fail(document_, place, "its keys are not finite", "finite numbers");
     }
     if (std::adjacent_find(keys.times.begin(), keys.times.end(), std::greater<>()) != keys.times.end()) {
       fail(document_, place + ".input", "its times run back", "each no earlier than the one before");

@@ -93,7 +93,7 @@ std::string image_bytes(const GltfDocument& document, int image) {
   const GltfImageSource& source = document.json.images[image];
   const std::string place = fmt::format("images[{}]", image);
   if (source.uri) return read_uri(*source.uri, base_of(document), place + ".uri");
-  if (source.buffer_view < 0) fail(document, place, "has neither a uri nor a bufferView");
+  if (source.buffer_view < 0) fail(document, place, "has neither a uri nor a bufferView", "one of them");
   return std::string(buffer_view_bytes(document, source.buffer_view));
 }
 

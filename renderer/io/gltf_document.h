@@ -14,7 +14,7 @@
 namespace tinygltf {
 class Model;
 struct Scene;
-}
+}  // namespace tinygltf
 
 namespace chiaro::renderer {
 
@@ -47,6 +47,6 @@ std::string image_bytes(const GltfDocument& document, int image);
 const tinygltf::Scene* shown_scene(const GltfDocument& document);
 
 [[noreturn]] void fail(const GltfDocument& document, const std::string& place, const std::string& problem,
-                       const std::string& expected = "");
+                       const std::string& expected);
 
 }  // namespace chiaro::renderer

@@ -59,7 +59,7 @@ std::unique_ptr<draco::Mesh> decode_mesh(const GltfDocument& document, std::stri
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (decoded.ok() && decoded.value()) return std::move(decoded).value();
   } catch (const std::bad_alloc&) {
-    fail(document, place, "asks for more memory than there is");
+    fail(document, place, "asks for more memory than there is", "data of Draco");
   } catch (const std::exception&) {  // a length that no container can have
   }
   fail(document, place, "is damaged", "a mesh in Draco's format");
@@ -101,7 +101,7 @@ bool copy_values(const draco::PointAttribute& attribute, std::size_t points, con
 DecodedAccessor decode_attribute(const GltfDocument& document, const draco::Mesh& mesh, int accessor, int id,
                                  const std::string& place) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(std::uint32_t(id));
-  if (attribute == nullptr) fail(document, place, fmt::format("attribute {} is not in the data", id));
+  if (attribute == nullptr) fail(document, place, fmt::format("attribute {} is not in the data", id), "one that is");
   DecodedAccessor decoded;
   decoded.accessor = document.model->accessors[std::size_t(accessor)];
   const int components = tinygltf::GetNumComponentsInType(std::uint32_t(decoded.accessor.type));
@@ -111,7 +111,8 @@ DecodedAccessor decode_attribute(const GltfDocument& document, const draco::Mesh
   }
   decoded.accessor.count = mesh.num_points();
   if (!copy_values(*attribute, mesh.num_points(), decoded.accessor, decoded.bytes)) {
-    fail(document, place, fmt::format("attribute {} does not fit accessors[{}]", id, accessor));
+    fail(document, place, fmt::format("attribute {} does not fit accessors[{}]", id, accessor),
+         "as many values of its type");
   }
   return decoded;
 }

@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr int kMaxDepth = 256;
 
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& problem,
-                       const std::string& expected = "") {
+                       const std::string& expected) {
   throw Error({file, place, problem, expected});
 }
 
@@ -43,7 +43,7 @@ json parse(const std::string& text, const std::string& file) {
   } catch (const json::parse_error& error) {
     fail(file, "JSON", fmt::format("syntax error at byte {}", error.byte), "a glTF 2.0 scene");
   } catch (const json::exception&) {
-    fail(file, "JSON", "holds a number that is out of range");
+    fail(file, "JSON", "holds a number that is out of range", "a glTF 2.0 scene");
   }
 }
 
@@ -73,7 +73,8 @@ class RuleCheck {
     const auto member = value.find(key);
     const std::string inner = place.empty() ? std::string(key) : fmt::format("{}.{}", place, key);
     if (member != value.end()) return step(*member, rest, rest.empty(), inner);
-    if (rest.empty() && rule_.required) fail(file_, inner, "is missing", inner == "asset" ? "a glTF 2.0 scene" : "");
+    if (!rest.empty() || !rule_.required) return;
+    fail(file_, inner, "is missing", inner == "asset" ? "a glTF 2.0 scene" : kind());
   }
 
   void step(json& value, std::string_view rest, bool last, const std::string& place) {
@@ -84,16 +85,41 @@ class RuleCheck {
     }
   }
 
+  // What the rule wants, in words.
+  std::string kind() const {
+    switch (rule_.kind) {
+      case JsonKind::kObject:
+        return "an object";
+      case JsonKind::kArray:
+        return "an array";
+      case JsonKind::kString:
+        return "a string";
+      case JsonKind::kBoolean:
+        return "true or false";
+      case JsonKind::kNumber:
+        return "a number";
+      case JsonKind::kNumbers:
+        return fmt::format("an array of {} numbers", rule_.size);
+      case JsonKind::kCount:
+        return "a whole number, not negative";
+      case JsonKind::kIndex:
+        return fmt::format("an index into {}", rule_.target);
+      case JsonKind::kIndices:
+        return "an array of indices";
+    }
+    return "";
+  }
+
   void check(json& value, const std::string& place) {
     switch (rule_.kind) {
       case JsonKind::kObject:
-        return require(value.is_object(), place, "an object");
+        return require(value.is_object(), place);
       case JsonKind::kArray:
-        return require(value.is_array(), place, "an array");
+        return require(value.is_array(), place);
       case JsonKind::kString:
-        return require(value.is_string(), place, "a string");
+        return require(value.is_string(), place);
       case JsonKind::kBoolean:
-        return require(value.is_boolean(), place, "true or false");
+        return require(value.is_boolean(), place);
       case JsonKind::kNumber:
         return check_number(value, place);
       case JsonKind::kNumbers:
@@ -107,21 +133,19 @@ class RuleCheck {
     }
   }
 
-  void require(bool right, const std::string& place, const char* expected) const {
-    if (!right) fail(file_, place, "is of the wrong type", expected);
+  void require(bool right, const std::string& place) const {
+    if (!right) fail(file_, place, "is of the wrong type", kind());
   }
 
   void check_number(const json& value, const std::string& place) const {
-    require(value.is_number(), place, "a number");
+    if (!value.is_number()) fail(file_, place, "is of the wrong type", "a number");
     const double number = value.get<double>();
     if (number >= rule_.low && number <= rule_.high) return;
     fail(file_, place, fmt::format("is {}", number), fmt::format("{:g} to {:g}", rule_.low, rule_.high));
   }
 
   void check_numbers(const json& value, const std::string& place) const {
-    if (!value.is_array() || int(value.size()) != rule_.size) {
-      fail(file_, place, "is of the wrong type", fmt::format("an array of {} numbers", rule_.size));
-    }
+    require(value.is_array() && int(value.size()) == rule_.size, place);
     for (const json& element : value) check_number(element, place);
   }
 
@@ -131,7 +155,7 @@ class RuleCheck {
         std::floor(value.get<double>()) == value.get<double>()) {
       value = std::uint64_t(value.get<double>());
     }
-    require(value.is_number_unsigned(), place, "a whole number, not negative");
+    if (!value.is_number_unsigned()) fail(file_, place, "is of the wrong type", "a whole number, not negative");
     if (double(value.get<std::uint64_t>()) > rule_.high) {
       fail(file_, place, fmt::format("is {}", value.get<std::uint64_t>()), fmt::format("at most {:g}", rule_.high));
     }
@@ -158,7 +182,7 @@ class RuleCheck {
   }
 
   void check_indices(json& value, const std::string& place) {
-    require(value.is_array(), place, "an array of indices");
+    require(value.is_array(), place);
     for (std::size_t i = 0; i < value.size(); ++i) check_index(value[i], fmt::format("{}[{}]", place, i));
   }
 

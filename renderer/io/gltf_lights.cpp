@@ -25,7 +25,7 @@ Vec3f intensity_of(const GltfDocument& document, int index) {
   const std::vector<double> color = light.color.empty() ? std::vector<double>{1, 1, 1} : light.color;
   const Vec3f intensity{float(color[0] * light.intensity), float(color[1] * light.intensity),
                         float(color[2] * light.intensity)};
-  if (!is_finite(intensity)) fail(document, light_place(index), "its intensity is not finite");
+  if (!is_finite(intensity)) fail(document, light_place(index), "its intensity is not finite", "finite numbers");
   if (max_component(intensity) > kBrightest) {
     fail(document, light_place(index), "its intensity is too bright", fmt::format("at most {:g}", kBrightest));
   }

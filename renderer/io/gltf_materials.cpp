@@ -37,7 +37,8 @@ Vec3f emission(const GltfMaterialReader& reader, const tinygltf::Material& mater
   const double strength = emissive_strength(material);
   const auto& f = material.emissiveFactor;
   const Vec3f result{float(f[0] * strength), float(f[1] * strength), float(f[2] * strength)};
-  if (!is_finite(result)) fail(reader.document, reader.place + ".emissiveFactor", "its emission is not finite");
+  if (!is_finite(result))
+    fail(reader.document, reader.place + ".emissiveFactor", "its emission is not finite", "finite numbers");
   if (max_component(result) > kBrightest) {
     fail(reader.document, reader.place + ".emissiveFactor", "its emission is too bright",
          fmt::format("at most {:g} cd/m²", kBrightest));

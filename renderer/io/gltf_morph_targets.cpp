@@ -65,7 +65,7 @@ void add_morph_targets(const GltfDocument& document, const GltfPrimitiveRef& ref
     add_target({document, targets[t], fmt::format("{}.targets[{}]", place_of(ref), t), weights[t]}, mesh);
   }
   if (std::all_of(mesh.positions.begin(), mesh.positions.end(), [](Vec3f p) { return is_finite(p); })) return;
-  fail(document, place_of(ref), "its morph targets put vertices at infinity");
+  fail(document, place_of(ref), "its morph targets put vertices at infinity", "finite numbers");
 }
 
 }  // namespace chiaro::renderer

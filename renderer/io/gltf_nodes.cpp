@@ -136,7 +136,7 @@ std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose
     const NodePose* posed = find_pose(pose, i);
     const Mat4f local = posed == nullptr ? local_transform(nodes[i]) : posed_transform(nodes[i], *posed);
     world[i] = parents[i] == kNoParent ? local : world[parents[i]] * local;
-    if (!is_finite(world[i])) fail(document, node_place(i), "its transform is not finite");
+    if (!is_finite(world[i])) fail(document, node_place(i), "its transform is not finite", "finite numbers");
     is_reached[i] = true;
     waiting.insert(waiting.end(), nodes[i].children.begin(), nodes[i].children.end());
   }
@@ -198,7 +198,8 @@ std::vector<Mat4f> instance_transforms(const GltfDocument& document, const Place
     copy.rotation = instance_values(rotations, i, 4);
     copy.scale = instance_values(scales, i, 3);
     transforms[i] = node.world_from_node * local_transform(copy);
-    if (!is_finite(transforms[i])) fail(document, place_of(node), fmt::format("instance {} is not finite", i));
+    if (!is_finite(transforms[i]))
+      fail(document, place_of(node), fmt::format("instance {} is not finite", i), "finite numbers");
   }
   return transforms;
 }

@@ -109,7 +109,8 @@ std::vector<Mat4f> world_from_bind(const GltfDocument& document, int skin, const
         bind(row, column) = inverse_bind[16 * j + std::size_t(4 * column + row)];
     }
     transforms[j] = transforms[j] * bind;
-    if (!is_finite(transforms[j])) fail(document, place, fmt::format("joint {} has a transform that is not finite", j));
+    if (!is_finite(transforms[j]))
+      fail(document, place, fmt::format("joint {} has a transform that is not finite", j), "finite numbers");
   }
   return transforms;
 }

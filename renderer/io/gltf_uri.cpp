@@ -85,7 +85,7 @@ std::string read_data_uri(const std::string& uri, const std::string& file, const
   if (!header.ends_with(";base64")) return percent_decoded(data);
   std::optional<std::string> decoded =
       base64_decoded(data.find('%') == std::string_view::npos ? std::string(data) : percent_decoded(data));
-  if (!decoded) throw Error({file, place, "a data URI that is not base64", ""});
+  if (!decoded) throw Error({file, place, "a data URI that is not base64", "base64"});
   return *std::move(decoded);
 }
 
