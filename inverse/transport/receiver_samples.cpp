@@ -64,10 +64,6 @@ SurfaceSample sample_of(const Receivers& r, std::size_t i, const Triangle& face,
 
 float nudge_of(const Receivers& r) { return kNudge * bounds(r.positions).diagonal(); }
 
-float surface_rounding(const renderer::TriangleExtent& extent) {
-  return renderer::surface_rounding(extent.largest_coordinate, extent.circle_radius);
-}
-
 // The rounding of the triangles that a point lies on, at rays that meet them straight on; 0: it lies on none.
 class RoundingOfScene {
  public:

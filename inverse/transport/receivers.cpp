@@ -21,6 +21,7 @@ constexpr double kDefaultGrowth = 1.3;   // … or this many times the scene's o
 constexpr double kLeastOfWanted = 2.0 / 3, kMostOfWanted = 5.0 / 3;
 constexpr float kShortestEdge = 1e-5F;  // of the scene's longest one
 constexpr double kMostReceivers = 3e7;
+
 SurfaceMesh world_mesh(const renderer::Scene& scene, const renderer::Instance& instance) {
   const renderer::Mesh& mesh = scene.meshes[instance.mesh];
   SurfaceMesh out;

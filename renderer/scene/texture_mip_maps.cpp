@@ -1,6 +1,8 @@
 #include "renderer/scene/texture_mip_maps.h"
 
+#include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "renderer/core/control.h"
@@ -25,7 +27,9 @@ class MippedTextures {
   void add(TextureUse& use, MipOptions options) {
     if (use.texture < 0 || textures_[use.texture].filtered_as_stored) return;
     const Texture& texture = textures_[use.texture];
-    if (all_opaque(texture.rgba) && all_opaque(texture.wide_rgba)) options.alpha_weighted = false;
+    if (options.alpha_weighted) {
+      options.alpha_weighted = !all_opaque(texture.rgba) || !all_opaque(texture.wide_rgba);
+    }
     const auto [known, is_new] = by_use_.try_emplace({use.texture, options.srgb, options.alpha_weighted}, use.texture);
     if (is_new && options_[use.texture]) {
       known->second = int(textures_.size());

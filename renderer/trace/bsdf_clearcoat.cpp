@@ -1,14 +1,10 @@
 #include "renderer/trace/bsdf_clearcoat.h"
 
+#include "renderer/trace/fresnel.h"
 #include "renderer/trace/ggx.h"
 #include "renderer/trace/specular_albedo.h"
 
 namespace chiaro::renderer {
-namespace {
-
-constexpr float kF0 = 0.04F;
-
-}  // namespace
 
 BsdfClearcoat::BsdfClearcoat(const SurfacePoint& point)
     : frame_(point.layers->clearcoat_normal),
@@ -20,7 +16,7 @@ Vec3f BsdfClearcoat::eval(Vec3f to_viewer, Vec3f to_light, LightSource source) c
   if (wo.z <= 0 || wi.z <= 0) return {};
   const float alpha = widened_alpha(alpha_, source);
   const Vec3f h = normalize(wo + wi);
-  const float fresnel = kF0 + (1 - kF0) * schlick_weight(dot(wo, h));
+  const float fresnel = clearcoat_reflectance(dot(wo, h));
   const float facets = ggx::distribution(h, alpha) * ggx::visibility(wo.z, wi.z, alpha);
   const float value = strength_ * fresnel * widening_gain(wo.z, alpha_, alpha) * facets * wi.z;
   return {value, value, value};
@@ -40,10 +36,10 @@ std::optional<Vec3f> BsdfClearcoat::sample(Vec3f to_viewer, Vec2f u) const {
 }
 
 float BsdfClearcoat::albedo(Vec3f direction) const {
-  return strength_ * specular_albedo(std::abs(dot(direction, frame_.normal)), alpha_).at(kF0);
+  return strength_ * specular_albedo(std::abs(dot(direction, frame_.normal)), alpha_).at(kClearcoatF0);
 }
 
-float BsdfClearcoat::mean_albedo() const { return strength_ * mean_specular_albedo(alpha_).at(kF0); }
+float BsdfClearcoat::mean_albedo() const { return strength_ * mean_specular_albedo(alpha_).at(kClearcoatF0); }
 
 bool BsdfClearcoat::rough() const { return is_rough(alpha_); }
 

@@ -18,6 +18,10 @@ inline float schlick_weight(float cosine) {
   return m * m * m * m * m;
 }
 
+// That of a clearcoat, as KHR_materials_clearcoat has it, before its strength.
+inline constexpr float kClearcoatF0 = 0.04F;
+inline float clearcoat_reflectance(float cosine) { return kClearcoatF0 + (1 - kClearcoatF0) * schlick_weight(cosine); }
+
 // Of a dielectric at normal incidence. eta: refractive index of the far side over that of the near side.
 inline float normal_reflectance(float eta) {
   const float root = (eta - 1) / (eta + 1);

@@ -181,9 +181,7 @@ SurfaceLayers layers_at(const Locus& at, const MaterialLayers& m) {
 
 // What the polish lets out of the light that is emitted below it.
 float below_clearcoat(const SurfaceLayers& layers, Vec3f to_viewer) {
-  constexpr float kF0 = 0.04F;
-  const float fresnel = kF0 + (1 - kF0) * schlick_weight(std::abs(dot(layers.clearcoat_normal, to_viewer)));
-  return 1 - layers.clearcoat * fresnel;
+  return 1 - layers.clearcoat * clearcoat_reflectance(std::abs(dot(layers.clearcoat_normal, to_viewer)));
 }
 
 using Corners = std::array<Vec3f, 3>;
@@ -276,8 +274,8 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   const Corners corners = world_corners(at, instance.world_from_object);
   at.footprint = cone_footprint(ray, hit.distance, corners);
   point.position = corners[0] + hit.u * (corners[1] - corners[0]) + hit.v * (corners[2] - corners[0]);
-  const TriangleExtent extent = triangle_extent(corners, mesh, hit.triangle, instance.world_from_object, hit.instanced);
-  point.rounding = surface_rounding(extent.largest_coordinate, extent.circle_radius);
+  point.rounding =
+      surface_rounding(triangle_extent(corners, mesh, hit.triangle, instance.world_from_object, hit.instanced));
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;
   point.geometric_normal = (point.front ? 1.0F : -1.0F) * hit.geometric_normal;
   const Vec3f to_viewer = -normalize(ray.direction);

@@ -21,6 +21,11 @@ TriangleExtent triangle_extent(const std::array<Vec3f, 3>& corners, const Mesh& 
 // Of the triangle that a ray met.
 TriangleExtent triangle_extent(const Scene& scene, const Hit& hit);
 
+// How far rounding may take a point of the triangle off the plane that rays meet, metres.
+inline float surface_rounding(const TriangleExtent& extent) {
+  return surface_rounding(extent.largest_coordinate, extent.circle_radius);
+}
+
 // Of no triangle of the scene is either larger.
 TriangleExtent largest_extent(const Scene& scene);
 
