@@ -16,7 +16,8 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
 endif()
 
 if(CHIARO_SANITIZERS)
-  target_compile_options(chiaro_compiler INTERFACE -fsanitize=${CHIARO_SANITIZERS} -fno-omit-frame-pointer
+  target_compile_options(chiaro_compiler INTERFACE -fno-omit-frame-pointer
+    "$<$<NOT:$<BOOL:$<TARGET_PROPERTY:CHIARO_UNSANITIZED>>>:-fsanitize=${CHIARO_SANITIZERS}>"
     -O1 -g1)  # more of either makes the build many times longer and finds nothing more
   target_link_options(chiaro_compiler INTERFACE -fsanitize=${CHIARO_SANITIZERS})
   target_compile_definitions(chiaro_compiler INTERFACE CHIARO_SANITIZED)

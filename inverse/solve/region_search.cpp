@@ -2,6 +2,7 @@
 
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/choose_light_count.h"
+#include "inverse/solve/light_from_outside.h"
 #include "inverse/solve/lights_beside_surfaces.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/optimize_simplex.h"
@@ -77,7 +78,7 @@ double norm_of_wanted(const Observations& observations) {
   return std::max((observations.sqrt_weight.asDiagonal() * observations.wanted).norm(), 1e-300);
 }
 
-// The faces of a region that one of the lights is at, moved outwards.
+// The faces of a region that one of the lights is at, or beyond, moved outwards.
 struct Growth {
   Box3f region;
   std::size_t lights_at_border = 0;
@@ -204,8 +205,14 @@ std::optional<Box3f> RegionSearch::wider_region() const {
     if (norm > kMatters * norm_of_wanted(judged)) lights.push_back(found_.others[j].position);
   }
   const Growth growth = grown_at(transport.cache.grid.region, lights);
-  if (growth.lights_at_border < (comes_close() ? kCrowd : 1)) return std::nullopt;
-  return growth.region;
+  if (growth.lights_at_border >= (comes_close() ? kCrowd : 1)) return growth.region;
+  if (comes_close()) return std::nullopt;
+  std::vector<Vector3d> outside;
+  for (const LightEstimate& light : find_light_from_outside(response, *exact_, judged, found_.others)) {
+    outside.push_back(light.position);
+  }
+  if (outside.empty()) return std::nullopt;
+  return grown_at(transport.cache.grid.region, outside).region;
 }
 
 bool RegionSearch::comes_close() const { return is_explained(found_) || part_left() < kCloseEnough; }

@@ -410,6 +410,31 @@ TEST(Solve, FindsLightsOutsideTheBoundsOfAnOpenScene) {
   }));
 }
 
+// A room of 4 x 3 x 4 m with an opening of 1 x 1 m in the wall at x = 0, or without.
+renderer::Scene room_with_window(bool open) {
+  renderer::Mesh room = test::room({4, 3, 4}, 12);
+  std::erase_if(room.triangles, [&](const renderer::Triangle& triangle) {
+    const Vec3f middle =
+        (room.positions[triangle[0]] + room.positions[triangle[1]] + room.positions[triangle[2]]) / 3.0F;
+    return open && middle.x < 0.01F && std::abs(middle.y - 1.5F) < 0.5F && std::abs(middle.z - 2) < 0.5F;
+  });
+  renderer::Scene scene;
+  test::add_mesh(scene, std::move(room), test::lambert({0.5F, 0.5F, 0.5F}), "room");
+  return scene;
+}
+
+// The patch that it throws is far from the window, and no light inside is drawn to that.
+TEST(Solve, FindsALampOutsideAWindow) {
+  const PaintedCorner room(0.25F, room_with_window(true));
+  const LightEstimates known{{{-1.3, 2.6, 2.4}, {60, 50, 40}}, {{3, 2, 3}, {2, 2, 3}}};
+  const Target target = room.target(known, 0);
+  const SolveProblem problem{room.tracer(), target, {}, {}, bake_settings(0), {}};
+  const SolveResult result = solve(problem, quick());
+  EXPECT_EQ(result.lights.size(), 2U);
+  EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * room.diagonal());
+  EXPECT_LT(result.relative_l2, 0.05);
+}
+
 // What it shines is a small part of all light, and of what is wanted of it all.
 TEST(Solve, ALightBesideAnOpenSceneIsFoundBesideBrightOnesThatStay) {
   const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
