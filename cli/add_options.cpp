@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/named_file.h"
 #include "cli/output_paths.h"
 #include "cli/usage_error.h"
 
@@ -79,8 +80,7 @@ std::vector<std::string> input_files(CLI::App& command) {
     if (!names_inputs(*option)) continue;
     const bool after_name = option->get_type_name().find('=') != std::string::npos;
     for (const std::string& text : option->results()) {
-      const std::size_t equals = after_name ? text.find('=') : text.npos;
-      files.push_back(equals == text.npos ? text : text.substr(equals + 1));
+      files.push_back(after_name ? split_named_file(text).file : text);
     }
   }
   return files;

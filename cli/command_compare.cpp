@@ -108,8 +108,10 @@ int compare_two_frames(const CompareCommand& options, Session& session) {
   if (!options.output.empty()) require_view(options.frames.view);
   const ComparedFrames frames = load_compared_frames(options.a, options.b, options.frames.view, options.resize);
   session.stop_if_interrupted();
+  FrameComparisonOptions wanted = options.frames;
+  wanted.picture = !options.output.empty();
   const FrameComparison comparison =
-      naming_file(options.a, [&] { return compare_frames(frames, options.frames, session.control()); });
+      naming_file(options.a, [&] { return compare_frames(frames, wanted, session.control()); });
   session.warn(frames.notes);
   if (!frames.by_view) {
     session.warn(given_for_nothing(*options.command, {"--display", "--view", "--look", "--exposure"},

@@ -136,7 +136,7 @@ std::string surface_table(const inverse::TargetComparison& comparison) {
 JsonObject comparison_summary(const FrameComparison& comparison) {
   JsonObject summary = summary_of(comparison.whole);
   summary.emplace_back("scene_linear", comparison.scene_linear);
-  if (comparison.scene_linear) summary.emplace_back("exposure", comparison.exposure);
+  if (comparison.exposure) summary.emplace_back("exposure", *comparison.exposure);
   if (const renderer::HdrFlip& hdr = comparison.hdr_flip; hdr.exposures > 0) {
     summary.emplace_back("flip_hdr_exposures",
                          JsonObject{{"start", hdr.start}, {"stop", hdr.stop}, {"count", hdr.exposures}});

@@ -82,9 +82,11 @@ FrameComparison compare_frames(const ComparedFrames& frames, const FrameComparis
                                const renderer::Control& control) {
   FrameComparison found;
   found.scene_linear = frames.scene_linear;
-  const ViewChoice view = frames.scene_linear ? exposed_for(frames.b, options.view) : options.view;
-  found.exposure = view.view.exposure;
-  found.panels = panels_of(frames, view);
+  if (options.picture || !options.no_flip) {
+    const ViewChoice view = frames.scene_linear ? exposed_for(frames.b, options.view) : options.view;
+    if (frames.scene_linear) found.exposure = view.view.exposure;
+    found.panels = panels_of(frames, view);
+  }
   if (!options.no_flip) add_flip(frames, options.pixels_per_degree, control, found);
   found.whole = figures_of(frames, found, {});
   found.regions = options.regions;

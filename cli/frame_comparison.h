@@ -30,8 +30,8 @@ struct FrameComparison {
   FrameFigures whole;
   std::vector<NamedRegion> regions;
   std::vector<FrameFigures> of_regions;
-  float exposure = 0;          // EV that the view showed scene-linear frames at
-  renderer::HdrFlip hdr_flip;  // of scene-linear frames
+  std::optional<float> exposure;  // EV that the view showed scene-linear frames at
+  renderer::HdrFlip hdr_flip;     // of scene-linear frames
   renderer::ComparisonPanels panels;
 };
 
@@ -40,6 +40,7 @@ struct FrameComparisonOptions {
   std::vector<NamedRegion> regions;
   double pixels_per_degree = renderer::kPixelsPerDegree;
   bool no_flip = false;
+  bool picture = true;  // panels are wanted; without them, and without FLIP, no view is needed
 };
 
 // PSNR is against the largest value of B where both are scene-linear, else against 1, the display's white. FLIP is that

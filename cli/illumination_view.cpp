@@ -61,11 +61,14 @@ Image illumination_difference(const Image& a, const Image& b) {
 }
 
 void add_illumination_picture_options(CLI::App& command, IlluminationPictureOptions& options) {
-  add_text(command,
-           {"--picture", "P.png|P.exr",
-            "The illumination as a camera sees it, too: of white surfaces, hatched where none is known (.exr, .png, "
-            ".jpg, .jpeg, .tif or .tiff)"},
-           options.file);
+  add_parsed(command,
+             {"--picture", "P.png|P.exr",
+              "The illumination as a camera sees it, too: of white surfaces, hatched where none is known (.exr, .png, "
+              ".jpg, .jpeg, .tif or .tiff)"},
+             [&options](const std::string& text) {
+               require_extension(text, {".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"});
+               options.file = text;
+             });
   add_text(command, {"--camera", "NAME", "Camera of the picture (default: the scene's first)"}, options.camera);
   add_count(command, {"--width", "W", "Pixels across of the picture (default 960)"}, options.size.width, {1, 1 << 16});
   add_count(command, {"--height", "H", "Pixels down of the picture (default: from the camera's aspect ratio)"},
@@ -74,10 +77,7 @@ void add_illumination_picture_options(CLI::App& command, IlluminationPictureOpti
 }
 
 void require_picture(const IlluminationPictureOptions& options) {
-  if (options.file.empty()) return;
-  if (is_exr(options.file)) return;
-  require_extension(options.file, {".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"});
-  require_view(options.view);
+  if (!options.file.empty() && !is_exr(options.file)) require_view(options.view);
 }
 
 std::optional<PictureCamera> choose_picture_camera(const IlluminationPictureOptions& options,

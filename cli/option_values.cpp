@@ -103,7 +103,8 @@ double parse_bytes(std::string_view text) {
     }
   }
   double value = 0;
-  if (!parses_whole(text, value) || !contains(kPositive, value)) refuse(all, "a size above 0: 800M, 4G");
+  if (!parses_whole(text, value) || !contains(kPositive, value))
+    refuse(all, "bytes above 0, or with k, M, G or T: 800M, 4G");
   return scale * value;
 }
 

@@ -1,5 +1,7 @@
 #include "cli/session.h"
 
+#include <algorithm>
+
 #include "cli/interruption.h"
 #include "cli/output_paths.h"
 #include "cli/text_output.h"
@@ -19,8 +21,12 @@ Session::Session(const CommonOptions& options)
   }
 }
 
+void Session::warn(const std::string& text) {
+  if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(text);
+}
+
 void Session::warn(const std::vector<std::string>& texts) {
-  warnings_.insert(warnings_.end(), texts.begin(), texts.end());
+  for (const std::string& text : texts) warn(text);
 }
 
 void Session::stop_if_interrupted() const { control_.stop_if_requested(); }

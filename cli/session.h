@@ -19,7 +19,8 @@ class Session {
   explicit Session(const CommonOptions& options);
 
   const renderer::Control& control() const { return control_; }
-  void warn(const std::string& text) { warnings_.push_back(text); }
+  // Once, however often a file is read.
+  void warn(const std::string& text);
   void warn(const std::vector<std::string>& texts);
   // After a stage that does not look at the control itself.
   void stop_if_interrupted() const;

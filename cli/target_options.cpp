@@ -24,12 +24,8 @@ constexpr double kOtherAspect = 0.01;      // of width to height, relative, or m
 constexpr double kMuchIsWhite = 0.1;       // of the pixels, or more
 constexpr double kHardlyAnyIsUsed = 0.02;  // of the pixels, or less
 
-// Text that is a file's name is that alone, whatever is in it.
 NamedFile parse_named_file(const std::string& text) {
-  std::error_code unknown;
-  const auto equals = std::filesystem::is_regular_file(text, unknown) ? std::string::npos : text.find('=');
-  NamedFile named =
-      equals == std::string::npos ? NamedFile{"", text} : NamedFile{text.substr(0, equals), text.substr(equals + 1)};
+  NamedFile named = split_named_file(text);
   if (named.file.empty()) throw UsageError(fmt::format("'{}' (expected NAME=FILE)", text));
   return named;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/json_output.h"
+#include "cli/named_file.h"
 #include "cli/painted_picture.h"
 #include "cli/scene_loading.h"
 #include "cli/transport_options.h"
@@ -14,17 +15,12 @@
 
 namespace chiaro::cli {
 
-// "CAMERA=IMAGE"; without CAMERA, the scene's first. Or "NODE=IMAGE".
-struct NamedFile {
-  std::string name, file;
-};
-
 struct TargetChoices {
   std::string file;
-  float scale = 1;         // cd/m² per COLOR_0, where a target file has no _ILLUMINATION
-  SurfaceOptions surface;  // where there is no target file
-  std::vector<NamedFile> images, masks;
-  std::vector<NamedFile> lightmaps;  // of nodes
+  float scale = 1;                       // cd/m² per COLOR_0, where a target file has no _ILLUMINATION
+  SurfaceOptions surface;                // where there is no target file
+  std::vector<NamedFile> images, masks;  // of cameras; without a name, of the scene's first
+  std::vector<NamedFile> lightmaps;      // of nodes
   std::optional<int> lightmap_uv;
   inverse::PictureContent content = inverse::PictureContent::kBeauty;
   PictureEncoding encoding;

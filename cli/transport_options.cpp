@@ -85,7 +85,7 @@ inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const Sur
   const renderer::VertexMesh mesh = renderer::load_vertex_mesh(options.on);
   inverse::Receivers receivers = inverse::receivers_from_mesh(mesh);
   place_on_scene(tracer, receivers, options.on, session);
-  for (const std::string& warning : mesh.warnings) session.warn(fmt::format("{}: {}", options.on, warning));
+  session.warn(mesh.warnings);
   return receivers;
 }
 

@@ -24,7 +24,7 @@ void check_cache(const SolveProblem& problem) {
   }
   if (header.receiver_fingerprint != fingerprint(problem.target.receivers)) {
     throw Error({file, "header", "stale cache: baked for other receivers than the target's",
-                 "a cache baked with --on the target or the receivers it was painted on"});
+                 "a cache baked with --on the target, or with the --on or --max-edge that it was painted with"});
   }
   if (header.settings.bounces != problem.bake.bounces) {
     throw Error({file, "header", fmt::format("stale cache: baked with {} bounces", header.settings.bounces),

@@ -119,7 +119,7 @@ Target load_illumination(const std::filesystem::path& path, float target_scale) 
   if (std::none_of(mesh.parts.begin(), mesh.parts.end(), has_values)) {
     throw Error({file, "", "an empty target: no primitive has illumination", "vertices with _ILLUMINATION or COLOR_0"});
   }
-  for (const std::string& warning : mesh.warnings) target.warnings.push_back(fmt::format("{}: {}", file, warning));
+  target.warnings = mesh.warnings;
   target.has_scaled_colors = std::any_of(mesh.parts.begin(), mesh.parts.end(), has_colors_alone);
   if (all_know_their_error(mesh)) {
     for (const VertexMeshPart& part : mesh.parts) append_standard_error(target, part, file);

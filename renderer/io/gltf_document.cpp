@@ -46,6 +46,11 @@ std::string load_buffer(GltfDocument& document, std::size_t index) {
 
 }  // namespace
 
+std::vector<std::string> naming_file(const GltfDocument& document, std::vector<std::string> warnings) {
+  for (std::string& warning : warnings) warning = document.path.string() + ": " + warning;
+  return warnings;
+}
+
 void fail(const GltfDocument& document, const std::string& place, const std::string& problem,
           const std::string& expected) {
   throw Error({document.path.string(), place, problem, expected});

@@ -46,6 +46,9 @@ std::string image_bytes(const GltfDocument& document, int image);
 // The file's scene, or its first where it names none; null: it has none.
 const tinygltf::Scene* shown_scene(const GltfDocument& document);
 
+// Each begins with the file's name.
+std::vector<std::string> naming_file(const GltfDocument& document, std::vector<std::string> warnings);
+
 [[noreturn]] void fail(const GltfDocument& document, const std::string& place, const std::string& problem,
                        const std::string& expected);
 

@@ -128,6 +128,7 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   loaded.lights = std::move(punctual.lights);
   loaded.light_nodes = std::move(punctual.nodes);
   if (auto environment = read_environment(document, loaded.warnings)) loaded.lights.push_back(*std::move(environment));
+  loaded.warnings = naming_file(document, std::move(loaded.warnings));
   return loaded;
 }
 

@@ -23,7 +23,7 @@ struct LoadedScene {
   Lights lights;                      // KHR_lights_punctual, in world space; last EXT_lights_image_based
   std::vector<int> light_nodes;       // of the punctual lights, which come first
   std::vector<std::string> variants;  // names, of KHR_materials_variants
-  std::vector<std::string> warnings;  // one line each, what was left out or repaired
+  std::vector<std::string> warnings;  // one line each, naming the file: what was left out or repaired
 };
 
 // Loads .glb or .gltf: node hierarchies (of the file's scene, or the first where it names none), instances, cameras,

@@ -193,7 +193,7 @@ VertexMesh load_vertex_mesh(const std::filesystem::path& path) {
   GltfDocument document = open_gltf(path);
   load_buffers(document);
   VertexMesh mesh;
-  mesh.warnings = document.warnings;
+  mesh.warnings = naming_file(document, document.warnings);
   const std::vector<Mat4f> world = world_from_nodes(document);
   for (const PlacedNode& node : place_nodes(document)) {
     if (node.mesh >= 0) add_instances(document, node, read_parts(document, node, world), mesh);

@@ -23,7 +23,7 @@ struct VertexMeshPart {
 
 struct VertexMesh {
   std::vector<VertexMeshPart> parts;
-  std::vector<std::string> warnings = {};  // one line each, of what was left out in reading
+  std::vector<std::string> warnings = {};  // one line each, naming the file: what was left out in reading
 };
 
 // One part per primitive and instance, in the order and at the place that load_gltf has them: node transforms (ours are

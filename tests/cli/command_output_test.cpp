@@ -461,14 +461,14 @@ TEST(CliInspect, WhatATargetLosesInReadingIsTold) {
   json gltf = json::parse(renderer::read_file(write_foreign_mesh(folder, {kColoured})));
   gltf["extensionsUsed"] = {"EXT_of_nobody"};
   const std::string file = folder.write("target.gltf", gltf.dump()).string();
-  const std::string lost = "extension EXT_of_nobody is not read; what it changes is left out";
+  const std::string lost = file + ": extension EXT_of_nobody is not read; what it changes is left out";
   EXPECT_EQ(inspected(file)["warnings"], json::array({lost}));
   const std::string strokes =
       folder.write("s.json", R"({"strokes":[{"color":[1,1,1],"radius":9,"path":[[0,0,0]]}]})").string();
   for (const char* option : {"--on", "--from"}) {
     const Outcome painted = run_with({"paint", file, "--strokes", strokes, option, file, "-o", folder / "painted.glb"});
     EXPECT_EQ(painted.exit_code, kDone) << painted.standard_error;
-    expect_told(painted, file + ": " + lost);
+    expect_told(painted, lost);
   }
 }
 

@@ -57,5 +57,17 @@ TEST(CliFrameComparison, FlipIsLeftOutOnRequest) {
   EXPECT_FALSE(compare_frames(display_pictures(), options, {}).whole.flip.has_value());
 }
 
+TEST(CliFrameComparison, FiguresOfLinearFramesAloneNeedNoView) {
+  ComparedFrames frames = display_pictures();
+  frames.scene_linear = true;
+  FrameComparisonOptions options;
+  options.view.config = "/nowhere/config.ocio";
+  EXPECT_ANY_THROW(compare_frames(frames, options, {}));
+  options.no_flip = true;
+  EXPECT_ANY_THROW(compare_frames(frames, options, {})) << "the picture needs one";
+  options.picture = false;
+  EXPECT_GT(compare_frames(frames, options, {}).whole.image.rmse, 0);
+}
+
 }  // namespace
 }  // namespace chiaro::cli

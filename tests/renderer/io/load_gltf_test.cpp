@@ -419,10 +419,13 @@ TEST(GltfMaterials, TexturesWhoseCoordinatesAMeshHasNotAreTold) {
            {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}, {"texCoord", 1}}}}}}}}});
   gltf.primitive()["material"] = 0;
   gltf.add_node({{"mesh", 0}, {"scale", {1, 1, 0}}});  // a mesh of its own in the scene, of the same material
+  const std::string file = (folder / "scene.glb").string();
   const std::vector<std::string> expected{
-      "materials[0].emissiveTexture: mesh \"wall\" has no TEXCOORD_3; the texture is not read there",
-      "materials[0].extensions.KHR_materials_transmission.transmissionTexture: mesh \"wall\" has no TEXCOORD_1; the "
-      "texture is not read there"};
+      file + ": materials[0].emissiveTexture: mesh \"wall\" has no TEXCOORD_3; the texture is not read there",
+      file +
+          ": materials[0].extensions.KHR_materials_transmission.transmissionTexture: mesh \"wall\" has no TEXCOORD_1; "
+          "the "
+          "texture is not read there"};
   std::vector<std::string> told = load_gltf(folder.write("scene.glb", gltf.glb())).warnings;
   std::erase_if(told, [](const std::string& line) { return line.find("TEXCOORD") == std::string::npos; });
   EXPECT_EQ(told, expected);
