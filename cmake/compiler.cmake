@@ -5,7 +5,7 @@ target_compile_options(chiaro_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshad
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Of correct code of Eigen and of the standard library GCC 12 says this; what is true of ours the sanitizers find.
   target_compile_options(chiaro_compiler INTERFACE -Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict
-    -Wno-stringop-overflow -Wno-use-after-free)
+    -Wno-stringop-overflow -Wno-stringop-overread -Wno-use-after-free)
   # Kilobytes: templates outgrow GCC's default again and again, and a tenth of the build would be garbage collection.
   target_compile_options(chiaro_compiler INTERFACE --param=ggc-min-heapsize=400000)
 endif()
