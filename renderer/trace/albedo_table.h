@@ -40,4 +40,26 @@ struct AlbedoTable {
   }
 };
 
+// integrate(cosine, alpha): the albedo that viewers of this cosine see.
+template <class Albedo, class Integrate>
+AlbedoTable<Albedo> make_albedo_table(const Integrate& integrate) {
+  constexpr int kSize = kAlbedoTableSize;
+  constexpr float kLeastRoughness = 0.03F;
+  AlbedoTable<Albedo> table;
+  for (int r = 0; r < kSize; ++r) {
+    const float roughness = std::max(kLeastRoughness, float(r) / (kSize - 1));
+    Albedo mean{};
+    float total = 0;
+    for (int c = 0; c < kSize; ++c) {
+      const float cosine = std::max(1e-3F, float(c) / (kSize - 1));
+      const Albedo albedo = integrate(cosine, roughness * roughness);
+      table.directional[r][c] = albedo;
+      total += cosine;  // the weight of each: 2 cosθ d(cosθ), up to a factor
+      mean = mix(cosine / total, mean, albedo);
+    }
+    table.mean[r] = mean;
+  }
+  return table;
+}
+
 }  // namespace chiaro::renderer

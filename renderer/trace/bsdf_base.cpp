@@ -1,6 +1,7 @@
 #include "renderer/trace/bsdf_base.h"
 
 #include "renderer/core/sampler.h"
+#include "renderer/trace/boundary_albedo.h"
 #include "renderer/trace/ggx_transmission.h"
 #include "renderer/trace/specular_albedo.h"
 
@@ -12,10 +13,15 @@ constexpr float kLeastAlpha = 1e-3F;     // a smaller one is a mirror to any eye
 constexpr float kPunctualAlpha = 5e-3F;  // a lamp of 1 cm at a metre
 constexpr float kBlurredAlpha = 0.1F;
 
+// What is lost of light from one direction, spread evenly over others by what is lost from them. Per cosine.
+float spread_loss(float from, float to, float mean) {
+  return kInvPi * std::max(0.0F, from * to) / std::max(1e-6F, mean);
+}
+
 // Of light from or to directions of these cosines, per cosine: what facets that scatter once lose of it, spread evenly.
 float lost_by_scattering_once(float from, float to, float alpha) {
-  const float lost = specular_albedo(from, alpha).loss() * specular_albedo(to, alpha).loss();
-  return kInvPi * std::max(0.0F, lost) / std::max(1e-6F, mean_specular_albedo(alpha).loss());
+  return spread_loss(specular_albedo(from, alpha).loss(), specular_albedo(to, alpha).loss(),
+                     mean_specular_albedo(alpha).loss());
 }
 
 }  // namespace
@@ -48,6 +54,11 @@ BsdfBase::BsdfBase(const SurfacePoint& point)
   diffusion_ = 1 - layers.transmission;
   clear_ = transmission_ > 0 && is_clear(point.roughness);
   if (layers.solid && bends(layers.ior)) eta_ = inside ? 1 / layers.ior : layers.ior;
+  if (!loses_at_boundary()) return;
+  near_loss_ = mean_boundary_loss(alpha_, eta_);
+  far_loss_ = mean_boundary_loss(alpha_, 1 / eta_);
+  // As of light that is scattered once, but no more than is reciprocal.
+  lost_through_ = mean_boundary_transmittance(eta_) * std::min(1.0F, far_loss_ / std::max(1e-6F, near_loss_));
 }
 
 BsdfSketch BsdfBase::sketch() const {
@@ -115,6 +126,10 @@ Vec3f BsdfBase::reflection(Vec3f wo, Vec3f wi, float alpha, float diffuse_fade) 
     diffuse += ((1 - metallic_) * diffusion_ * below * kInvPi) * base_color_;
   }
   if (metallic_ > 0) diffuse += (metallic_ * lost_by_scattering_once(wo.z, wi.z, alpha_)) * scattered_by_metal();
+  if (loses_at_boundary()) {
+    const float lost = spread_loss(boundary_loss(wo.z, alpha_, eta_), boundary_loss(wi.z, alpha_, eta_), near_loss_);
+    diffuse += (transmission_ * (1 - lost_through_) * lost) * kWhite;
+  }
   return wi.z * (diffuse_fade * diffuse + facets);
 }
 
@@ -123,7 +138,11 @@ Vec3f BsdfBase::transmission(Vec3f wo, Vec3f wi, LightSource source) const {
   if (refracts()) {
     if (clear_ && source != LightSource::kExtended) return {};
     const ggx::Transmission t = ggx::refraction(wo, wi, widened_alpha(alpha_, source), eta_);
-    return t.value > 0 ? (facet_transmittance(dot(wo, t.half)) * t.value) * base_color_ : Vec3f{};
+    const float once = t.value > 0 ? facet_transmittance(dot(wo, t.half)) * t.value : 0;
+    if (!loses_at_boundary()) return once * base_color_;
+    const float lost =
+        spread_loss(boundary_loss(wo.z, alpha_, eta_), boundary_loss(-wi.z, alpha_, 1 / eta_), far_loss_);
+    return (once - transmission_ * lost_through_ * lost * wi.z / (eta_ * eta_)) * base_color_;
   }
   const ggx::Transmission t = ggx::thin_transmission(wo, wi, widened_alpha(alpha_, source));
   const float lost = lost_by_scattering_once(wo.z, -wi.z, alpha_);
@@ -148,6 +167,12 @@ BsdfBase::Weights BsdfBase::weights(Vec3f wo) const {
     w.straight = transmission_ * below;
   } else {
     w.facets += transmission_ * below;
+    if (loses_at_boundary()) {
+      const float lost = transmission_ * boundary_loss(wo.z, alpha_, eta_);
+      w.facets = std::max(0.0F, w.facets - lost);
+      w.diffuse += lost * (1 - lost_through_);
+      w.diffuse_transmission = lost * lost_through_ * luminance(base_color_);
+    }
     if (!refracts()) w.diffuse_transmission = transmission_ * std::max(0.0F, albedo.loss()) * luminance(base_color_);
   }
   return w;
@@ -215,7 +240,8 @@ Vec3f BsdfBase::hemispherical_reflectance() const {
   const Vec3f facets = albedo.scale * f0_ + (f90_ * albedo.bias) * kWhite;
   const Vec3f dielectric = facets + (diffusion_ * (1 - albedo.at(coat_f0_, f90_))) * base_color_;
   const Vec3f metal = albedo.scale * base_color_ + albedo.bias * kWhite;
-  return lerp(metallic_, dielectric, metal + std::max(0.0F, albedo.loss()) * scattered_by_metal());
+  const Vec3f with_metal = lerp(metallic_, dielectric, metal + std::max(0.0F, albedo.loss()) * scattered_by_metal());
+  return with_metal + (transmission_ * near_loss_ * (1 - lost_through_)) * kWhite;
 }
 
 }  // namespace chiaro::renderer

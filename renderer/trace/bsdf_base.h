@@ -10,9 +10,10 @@
 //   Source: Kelemen & Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, 2001.
 // - light that the facets let through: through a thin sheet or into a solid. The boundary of a solid reflects by
 //   Fresnel's equations, from inside too.
-// What rough metals and thin sheets lose where facets scatter light but once is given back as diffuse light, tinted by
-// as many reflections as it takes (Kulla & Conty, Revisiting Physically Based Shading at Imageworks, 2017). Directions
-// are unit, in the frame of the shading normal (+Z), which the viewer is above.
+// What rough metals, thin sheets and the boundaries of solids lose where facets scatter light but once is given back as
+// diffuse light, of metals tinted by as many reflections as it takes, of boundaries on both sides (Kulla & Conty,
+// Revisiting Physically Based Shading at Imageworks, 2017). Directions are unit, in the frame of the shading normal
+// (+Z), which the viewer is above.
 
 #include <optional>
 
@@ -89,6 +90,7 @@ class BsdfBase {
   float mean_coat() const;
   bool seen_from_inside() const { return eta_ > 0 && eta_ < 1; }
   Vec3f scattered_by_metal() const;
+  bool loses_at_boundary() const { return transmits() && refracts() && !clear_; }
   bool refracts() const { return eta_ > 0; }
   bool goes_straight() const { return clear_ && !refracts(); }
 
@@ -99,6 +101,8 @@ class BsdfBase {
   float transmission_ = 0, diffusion_ = 1;  // shares of the dielectric's base
   float eta_ = 0;                           // refractive index of the far side over the near side's; 0: thin
   bool clear_ = false;                      // is_clear()
+  // Of what a rough boundary loses from either side: means, and the share of the near side's that it lets through.
+  float near_loss_ = 0, far_loss_ = 0, lost_through_ = 0;
 };
 
 }  // namespace chiaro::renderer

@@ -13,7 +13,6 @@ static SpecularAlbedo mix(float t, SpecularAlbedo a, SpecularAlbedo b) {
 
 namespace {
 
-constexpr int kSize = kAlbedoTableSize;
 constexpr int kSamples = 256;
 
 SpecularAlbedo integrate(float cosine, float alpha) {
@@ -33,28 +32,8 @@ SpecularAlbedo integrate(float cosine, float alpha) {
   return sum;
 }
 
-float cosine_of(int i) { return std::max(1e-3F, float(i) / (kSize - 1)); }
-
-AlbedoTable<SpecularAlbedo> make_table() {
-  AlbedoTable<SpecularAlbedo> table;
-  for (int r = 0; r < kSize; ++r) {
-    const float roughness = std::max(0.03F, float(r) / (kSize - 1));
-    for (int c = 0; c < kSize; ++c) table.directional[r][c] = integrate(cosine_of(c), roughness * roughness);
-    float total = 0;
-    for (int c = 0; c < kSize; ++c) {
-      const float weight = cosine_of(c);  // 2 cosθ d(cosθ), up to the factor that `total` takes off
-      table.mean[r].scale += weight * table.directional[r][c].scale;
-      table.mean[r].bias += weight * table.directional[r][c].bias;
-      total += weight;
-    }
-    table.mean[r].scale /= total;
-    table.mean[r].bias /= total;
-  }
-  return table;
-}
-
 const AlbedoTable<SpecularAlbedo>& table() {
-  static const AlbedoTable<SpecularAlbedo> made = make_table();
+  static const auto made = make_albedo_table<SpecularAlbedo>(integrate);
   return made;
 }
 

@@ -173,6 +173,33 @@ TEST(BsdfLayers, WhiteMetalsLoseNothing) {
   }
 }
 
+// What is reflected and let through of each direction, both sides together, is all of it.
+TEST(BsdfLayers, WhiteBoundariesLoseNothing) {
+  for (const float roughness : {0.2F, 0.4F, 0.6F, 1.0F}) {
+    for (const float ior : {1.2F, 1.5F, 2.4F}) {
+      for (const bool front : {true, false}) {
+        SurfacePoint point = layered_point({1, 1, 1}, 0, roughness);
+        point.layers->transmission = 1;
+        point.layers->solid = true;
+        point.layers->ior = ior;
+        point.front = front;
+        const double eta = front ? double(ior) : 1 / double(ior);
+        for (const Vec3f& viewer : kViewers) {
+          double sum = 0;
+          constexpr int kCount = 1 << 14;
+          for (int i = 0; i < kCount; ++i) {
+            Sampler sampler(6, 0, std::uint32_t(i));
+            const Vec2f u = sampler.next_2d();
+            const auto s = Bsdf(point).sample(viewer, u, sampler.next_1d());
+            if (s) sum += double(s->weight.y) * (s->direction.z < 0 ? eta * eta : 1.0) / kCount;
+          }
+          EXPECT_NEAR(sum, 1, 0.02) << roughness << ' ' << ior << ' ' << front << ' ' << viewer.z;
+        }
+      }
+    }
+  }
+}
+
 // What a smooth boundary reflects and lets through are Fresnel's shares.
 TEST(BsdfLayers, SmoothSolidsFollowFresnelAndSnell) {
   for (const bool front : {true, false}) {

@@ -142,7 +142,7 @@ double frame_mean(const Scene& scene, Vec3f eye, int samples, const Lights& ligh
 
 // In a room that glows the same everywhere, glass that absorbs nothing cannot be seen.
 TEST(ClearSurfaces, GlassIsInvisibleInAFurnace) {
-  for (const float roughness : {0.0F, 0.3F}) {
+  for (const float roughness : {0.0F, 0.3F, 0.6F, 1.0F}) {
     for (const bool solid : {false, true}) {
       Scene scene;
       add_mesh(scene, test::sphere({0, 0, 0}, 1, 24), glass(solid, roughness), "ball");
