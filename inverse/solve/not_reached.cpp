@@ -117,18 +117,20 @@ bool at_border_of(const renderer::Box3f& box, Vec3f position) {
   return box.contains(position) && double(min_component(inside)) <= kAtBorder * double(box.diagonal());
 }
 
-bool at_border(const SolveProblem& problem, const renderer::Box3f& region, const FoundLight& found) {
+// Or it came so far that it might have gone farther.
+bool at_border(const SolveProblem& problem, const SolveResult& result, const FoundLight& found) {
   const auto* light = std::get_if<renderer::PointLight>(&found.light);
   if (light == nullptr) return false;
+  if (result.lights_may_be_farther && !default_region(problem.tracer).contains(light->position)) return true;
   std::vector<renderer::Box3f> boxes = problem.places.boxes;
-  if (boxes.empty() && problem.places.mounts.empty()) boxes = {region};
+  if (boxes.empty() && problem.places.mounts.empty()) boxes = {result.region};
   return std::any_of(boxes.begin(), boxes.end(),
                      [&](const renderer::Box3f& box) { return at_border_of(box, light->position); });
 }
 
 bool any_at_border(const SolveProblem& problem, const SolveResult& result) {
   return std::any_of(result.lights.begin(), result.lights.end(),
-                     [&](const FoundLight& found) { return at_border(problem, result.region, found); });
+                     [&](const FoundLight& found) { return at_border(problem, result, found); });
 }
 
 constexpr const char* kWithoutConstraints = "without the constraints lights may come closer";
@@ -178,14 +180,16 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
       problem.places.light_distance > 0) {
     return kWithoutConstraints;
   }
-  return "no more lights from anywhere in the region explain it: paint it otherwise, or give it less weight";
+  return problem.places.boxes.empty() && !problem.grid.region
+             ? "no more lights explain it: paint it otherwise, give it less weight, or name a region farther away"
+             : "no more lights from anywhere in the region explain it: paint it otherwise, or give it less weight";
 }
 
 void leave_unknown_at_border(const SolveProblem& problem, SolveResult& result) {
   if (result.not_reached.empty()) return;
   const Vec3f unknown{renderer::kInfinity, renderer::kInfinity, renderer::kInfinity};
   for (FoundLight& found : result.lights) {
-    if (at_border(problem, result.region, found)) found.position_interval = found.intensity_interval = unknown;
+    if (at_border(problem, result, found)) found.position_interval = found.intensity_interval = unknown;
   }
 }
 

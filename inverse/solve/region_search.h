@@ -59,6 +59,7 @@ class RegionSearch {
   LightEstimates clusters;
   LightTree tree;
   double initial_seconds = 0, optimal_seconds = 0, cache_seconds = 0;
+  bool lights_may_be_farther = false;  // a larger region was due, and not searched any more
 
  private:
   void look_where_light_comes_from(StageClock& clock);

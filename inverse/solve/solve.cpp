@@ -31,7 +31,7 @@ namespace {
 
 using renderer::Error;
 
-constexpr int kMostRegions = 4;                 // one larger than the other
+constexpr int kMostRegions = 7;                 // one larger than the other
 constexpr float kHardlySeen = 1.0F / 16;        // of a region's longest side
 constexpr double kUnlit = 1e-6;                 // of the target's squared illumination
 constexpr std::size_t kMoreVertices = 3;        // times as many, where they misled the search
@@ -263,10 +263,12 @@ std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& b
     result.initial_seconds += search->initial_seconds;
     result.optimal_seconds += search->optimal_seconds;
     result.cache_seconds += search->cache_seconds;
-    region = search->wider_region();
-    if (best && !search->is_clearly_better_than(*best)) break;
+    if (best && !search->is_clearly_better_than(*best)) return best;
     best = std::move(search);
+    region = best->wider_region();
+    result.optimal_seconds += clock.finish("region", {{"grows", region ? 1 : 0}});
   }
+  best->lights_may_be_farther = region.has_value();
   return best;
 }
 
@@ -297,6 +299,7 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
   Importance more = choose_again(basis->importance, problem.target, kMoreVertices * before, seed);
   if (more.chosen.size() == before) return found;
   auto again = search(basis_of(std::move(more)), problem, found->problem.grid.region, found.get(), clock, result);
+  again->lights_may_be_farther = again->lights_may_be_farther || found->lights_may_be_farther;
   const bool goes_on = found->has_many() && !clock.out_of_time();
   return goes_on || again->misses_less_than(*found) ? std::move(again) : std::move(found);
 }
@@ -336,6 +339,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
     if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;
+  result.lights_may_be_farther = searched->lights_may_be_farther;
   result.target_noise = target_noise(problem.target);
   judge(problem, options, std::move(by_trace.traced), result);
   leave_unknown_at_border(problem, result);

@@ -79,6 +79,7 @@ struct SolveResult {
   int important_vertices = 0;
   std::string termination;
   renderer::Box3f region;               // of the grid that lights were sought in; empty where they were in place
+  bool lights_may_be_farther = false;   // than the largest region that was searched, and outside the scene
   std::vector<NotReached> not_reached;  // worst first; none where noise explains the error, or nearly so
   std::string advice;                   // what may help there
   std::vector<std::pair<int, int>>
