@@ -72,24 +72,24 @@ void add_indirect(const ExactIndirect& exact, std::vector<Outside>& outside) {
   for (std::size_t k = 0; k < outside.size(); ++k) outside[k].column += column_of(indirect[k]);
 }
 
-LightEstimates those_that_matter(const Observations& observations, const std::vector<Column>& columns,
-                                 const LightEstimates& lights, std::size_t first) {
+std::vector<Vector3d> places_that_matter(const Observations& observations, const std::vector<Column>& columns,
+                                         const LightEstimates& lights, std::size_t first) {
   std::vector<double> norm(lights.size(), 0.0);
   for (std::size_t j = first; j < lights.size(); ++j) {
     norm[j] = contribution_norm(observations, columns[j], lights[j].intensity);
   }
   const double least = kMatters * *std::max_element(norm.begin(), norm.end());
-  LightEstimates matter;
+  std::vector<Vector3d> places;
   for (std::size_t j = first; j < lights.size(); ++j) {
-    if (norm[j] > 0 && norm[j] >= least) matter.push_back(lights[j]);
+    if (norm[j] > 0 && norm[j] >= least) places.push_back(lights[j].position);
   }
-  return matter;
+  return places;
 }
 
 }  // namespace
 
-LightEstimates find_light_from_outside(const LightResponse& response, const ExactIndirect& exact,
-                                       const Observations& observations, const LightEstimates& found) {
+std::vector<Vector3d> find_light_from_outside(const LightResponse& response, const ExactIndirect& exact,
+                                              const Observations& observations, const LightEstimates& found) {
   std::vector<Column> columns = evaluate_columns(response, found, Evaluation::kTracedVisibility);
   const Column inside = total_illumination(columns, found, Eigen::Index(response.receiver_count()));
   Observations left = observations;
@@ -105,7 +105,7 @@ LightEstimates find_light_from_outside(const LightResponse& response, const Exac
   }
   const double error = refit_intensities(observations, columns, all);
   if (!(error < kClearlyBetter * relative_error(observations, inside))) return {};
-  return those_that_matter(observations, columns, all, found.size());
+  return places_that_matter(observations, columns, all, found.size());
 }
 
 }  // namespace chiaro::inverse

@@ -44,14 +44,13 @@ class Tries {
   // True: these went, as the others do as well.
   bool go_without(const std::vector<std::size_t>& gone) {
     if (gone.size() == free_.now.size()) return false;
-    const FreeLights rest = without(free_, gone);
+    FreeLights rest = without(free_, gone);
     FreeLights fewer = rest;
     bench_.descend(fewer.indirect, fewer.now);
     const Column left = bench_.illumination(fewer.indirect, fewer.now);
     if (take(fewer, left)) return true;
     // Beside a shadow's edge the others may have come down elsewhere, and worse.
-    FreeLights where_they_were = rest;
-    if (take(where_they_were, bench_.illumination(rest.indirect, rest.now))) return true;
+    if (take(rest, bench_.illumination(rest.indirect, rest.now))) return true;
     const double error = relative_error(bench_.observations, left);
     if (error < nearest_error_) nearest_error_ = error, nearest_ = std::move(fewer);
     return false;

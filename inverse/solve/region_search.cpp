@@ -207,10 +207,7 @@ std::optional<Box3f> RegionSearch::wider_region() const {
   const Growth growth = grown_at(transport.cache.grid.region, lights);
   if (growth.lights_at_border >= (comes_close() ? kCrowd : 1)) return growth.region;
   if (comes_close()) return std::nullopt;
-  std::vector<Vector3d> outside;
-  for (const LightEstimate& light : find_light_from_outside(response, *exact_, judged, found_.others)) {
-    outside.push_back(light.position);
-  }
+  const std::vector<Vector3d> outside = find_light_from_outside(response, *exact_, judged, found_.others);
   if (outside.empty()) return std::nullopt;
   return grown_at(transport.cache.grid.region, outside).region;
 }

@@ -172,8 +172,9 @@ BsdfBase::Weights BsdfBase::weights(Vec3f wo) const {
       w.facets = std::max(0.0F, w.facets - lost);
       w.diffuse += lost * (1 - lost_through_);
       w.diffuse_transmission = lost * lost_through_ * luminance(base_color_);
+    } else if (!refracts()) {
+      w.diffuse_transmission = transmission_ * std::max(0.0F, albedo.loss()) * luminance(base_color_);
     }
-    if (!refracts()) w.diffuse_transmission = transmission_ * std::max(0.0F, albedo.loss()) * luminance(base_color_);
   }
   return w;
 }
