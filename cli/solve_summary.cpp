@@ -128,6 +128,7 @@ JsonObject solve_summary(const inverse::SolveResult& result) {
           {"stages", stages},
           {"important_vertices", result.important_vertices},
           {"target_noise", result.target_noise},
+          {"verification_noise", result.verification_noise},
           {"not_told_apart", pairs},
           {"not_reached", places},
           {"advice", result.advice},
@@ -138,7 +139,7 @@ std::string solve_text(const inverse::SolveResult& result) {
   std::vector<TextRow> rows{{"error, traced afresh", text_of_percent(result.relative_l2)},
                             {"error by the cache", text_of_percent(result.relative_l2_cached)},
                             {"before the last optimisation", text_of_percent(result.initial_relative_l2)}};
-  rows.emplace_back("noise of the fresh trace", text_of_percent(result.verification_noise));
+  rows.emplace_back("its noise, taken out", text_of_percent(result.verification_noise));
   if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
   if (!result.error_curve.empty()) rows.emplace_back("by number of lights", text_of_curve(result.error_curve));
   for (const auto& [one, other] : result.not_told_apart) {

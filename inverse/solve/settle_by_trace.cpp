@@ -321,7 +321,10 @@ class Settler {
                         FreeLights& free) {
     if (out_of_time()) return;
     finish("settling", free.now.size(), false);
-    carry_along(with_, first, trace_first_part_of(joined(with_, lights, free)), free);
+    const renderer::Lights moved = point_lights(joined(with_, lights, free));
+    const FreshTrace now = trace_by_the_same_paths(problem_, moved, first, options_, control_);
+    clock_.finish("verification", verification_figures(now, problem_.target));
+    carry_along(with_, first, now, free);
     descend(bench, free);
   }
 

@@ -68,7 +68,7 @@ struct StageReport {
 
 struct SolveResult {
   std::vector<FoundLight> lights;            // brightest contribution first
-  double relative_l2 = 0;                    // traced afresh, all receivers
+  double relative_l2 = 0;                    // traced afresh, all receivers, without the noise of that trace
   double relative_l2_cached = 0;             // by the cache
   double initial_relative_l2 = 0;            // by the cache, before the last optimisation
   std::optional<double> verification_noise;  // relative standard error of the fresh evaluation; absent: not known

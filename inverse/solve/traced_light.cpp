@@ -13,9 +13,12 @@ namespace {
 
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
-constexpr int kFirstPart = 8;               // of the samples
-constexpr double kNoiseBesideTarget = 0.5;  // of the target's: adds an eighth to it
-constexpr double kNoiseBesideError = 0.1;   // of what the lights leave unexplained
+constexpr int kFirstPart = 8;          // of the samples, at most
+constexpr int kMoreOfSamples = 4;      // at least, as the noise of few is known only roughly
+constexpr std::uint64_t kParts = 100;  // purpose of the first one's seed
+// As the error is known without this noise, it may be …
+constexpr double kNoiseBesideTarget = 1;   // … of the target's …
+constexpr double kNoiseBesideError = 0.3;  // … or of what the lights leave unexplained
 
 bool has_fixed_light(const SolveProblem& problem) {
   const auto& materials = problem.tracer.scene().materials;
@@ -24,15 +27,16 @@ bool has_fixed_light(const SolveProblem& problem) {
                      [](const renderer::Material& m) { return max_component(m.emission) > 0; });
 }
 
-FreshTrace trace_afresh(const SolveProblem& problem, const renderer::Lights& lights, int samples, std::uint64_t seed,
-                        const renderer::Control& control) {
+// One part of a trace.
+FreshTrace trace_part(const SolveProblem& problem, const renderer::Lights& lights, int samples, std::size_t number,
+                      const SolveOptions& options, const renderer::Control& control) {
   renderer::Lights all = lights;
   all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
-  const renderer::TraceOptions trace{samples, problem.bake.bounces, seed, true};
+  const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, kParts + number), true};
   const auto start = std::chrono::steady_clock::now();
   auto traced = trace_illumination_by_light(problem.tracer, problem.target.receivers.samples, all, trace, control);
   traced.of_light.resize(lights.size());
-  return {std::move(traced.total), std::move(traced.of_light), samples, renderer::seconds_since(start)};
+  return {std::move(traced.total), std::move(traced.of_light), samples, {samples}, renderer::seconds_since(start)};
 }
 
 // Both together, as of all their samples.
@@ -45,6 +49,7 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
   }
   first.all = joined(std::move(first.all), first.samples, second.all, second.samples);
   first.samples += second.samples;
+  first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
   first.seconds += second.seconds;
   return first;
 }
@@ -58,10 +63,35 @@ double noise_that_does_not_matter(const SolveProblem& problem, const FreshTrace&
   return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
 }
 
-// At the speed of the first part.
-double samples_within(double seconds, const FreshTrace& first) {
-  return std::floor(first.samples * seconds / std::max(first.seconds, 1e-6));
-}
+// What a trace is of, and by what means.
+struct Tracing {
+  const SolveProblem& problem;
+  const renderer::Lights& lights;
+  const SolveOptions& options;
+  const renderer::Control& control;
+
+  FreshTrace part(int samples, std::size_t number) const {
+    return trace_part(problem, lights, samples, number, options, control);
+  }
+  FreshTrace with_more(FreshTrace traced, int samples) const {
+    if (samples <= 0) return traced;
+    return joined(std::move(traced), part(samples, traced.parts.size()));
+  }
+  FreshTrace with_enough(FreshTrace traced, int most, const StageClock& clock) const {
+    while (true) {
+      const double noise = noise_of(traced, problem.target).value_or(0);
+      const double may_be = noise_that_does_not_matter(problem, traced);
+      int more = renderer::samples_for_noise(traced.samples, noise, may_be, most) - traced.samples;
+      if (more <= 0) return traced;
+      more = std::min(std::max(more, traced.samples / kMoreOfSamples), most - traced.samples);
+      // At the speed of those before.
+      const double in_time = std::floor(traced.samples * clock.seconds_left() / std::max(traced.seconds, 1e-6));
+      traced.cut_short = more > in_time;
+      traced = with_more(std::move(traced), traced.cut_short ? int(in_time) : more);
+      if (traced.cut_short) return traced;
+    }
+  }
+};
 
 }  // namespace
 
@@ -86,27 +116,31 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
 FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
                             const renderer::Control& control, const StageClock& clock) {
   const int all = verification_samples(options, problem.target.receivers.size());
-  // How long they take is known afterwards.
-  const bool hurried = clock.is_limited() && options.verification_samples == 0;
-  const int first =
-      std::min(all, hurried ? kLeastVerificationSamples : std::max(kLeastVerificationSamples, all / kFirstPart));
-  return trace_afresh(problem, lights, first, fresh_seed(options.seed, 2), control);
+  const int few = std::min(all, kLeastVerificationSamples);
+  const Tracing tracing{problem, lights, options, control};
+  FreshTrace first = tracing.part(few, 0);
+  // How long more would take is known now.
+  if (clock.is_limited() && options.verification_samples == 0) return first;
+  return tracing.with_enough(std::move(first), std::max(few, all / kFirstPart), StageClock(0));
+}
+
+FreshTrace trace_by_the_same_paths(const SolveProblem& problem, const renderer::Lights& lights, const FreshTrace& other,
+                                   const SolveOptions& options, const renderer::Control& control) {
+  const Tracing tracing{problem, lights, options, control};
+  FreshTrace traced = tracing.part(other.parts.front(), 0);
+  while (traced.parts.size() < other.parts.size()) {
+    traced = tracing.with_more(std::move(traced), other.parts[traced.parts.size()]);
+  }
+  return traced;
 }
 
 FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
                      const SolveOptions& options, const renderer::Control& control, const StageClock& clock) {
   const int most = verification_samples(options, problem.target.receivers.size());
-  const int needed = options.verification_samples > 0
-                         ? most
-                         : renderer::samples_for_noise(first.samples, noise_of(first, problem.target).value_or(0),
-                                                       noise_that_does_not_matter(problem, first), most);
-  int more = needed - first.samples;
-  if (options.verification_samples == 0 && more > samples_within(clock.seconds_left(), first)) {
-    more = int(samples_within(clock.seconds_left(), first));
-    first.cut_short = true;
-  }
-  if (more <= 0) return first;
-  return joined(std::move(first), trace_afresh(problem, lights, more, fresh_seed(options.seed, 4), control));
+  const Tracing tracing{problem, lights, options, control};
+  if (options.verification_samples == 0) return tracing.with_enough(std::move(first), most, clock);
+  const int more = most - first.samples;
+  return tracing.with_more(std::move(first), more);
 }
 
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
@@ -116,11 +150,26 @@ FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::L
   return completed(problem, lights, std::move(first), options, control, clock);
 }
 
+double error_without_noise(const FreshTrace& traced, const Target& target) {
+  const double error = relative_l2(traced.all.value, target.illumination, target.weight);
+  const std::vector<Vec3f>& standard_error = traced.all.standard_error;
+  double noise = 0, spread = 0, wanted = 0;
+  for (std::size_t i = 0; i < standard_error.size(); ++i) {
+    const double squared = double(target.weight[i]) * squared_norm(standard_error[i]);
+    noise += squared;
+    spread += squared * squared;
+    wanted += double(target.weight[i]) * squared_norm(target.illumination[i]);
+  }
+  if (!(noise > 0)) return error;
+  const double known_to = std::sqrt(2 * spread);
+  return std::min(error, std::sqrt(std::max(error * error - noise / wanted, known_to / wanted)));
+}
+
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {
   const Target& target = problem.target;
   result.verification_noise = noise_of(traced, target);
+  result.relative_l2 = error_without_noise(traced, target);
   result.illumination = std::move(traced.all.value);
-  result.relative_l2 = relative_l2(result.illumination, target.illumination, target.weight);
   if (!result.verification_noise) return;  // by one path nobody can tell what is noise
   const double noise = std::hypot(*result.verification_noise, result.target_noise);
   result.not_reached = places_not_reached(target, result.illumination, noise);

@@ -26,7 +26,8 @@ int verification_samples(const SolveOptions& options, std::size_t receivers);
 struct FreshTrace {
   renderer::Illumination all;                // cd/m²; with what shines anyway
   std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
-  int samples = 0;                           // paths per receiver
+  int samples = 0;                           // paths per receiver …
+  std::vector<int> parts;                    // … of each part that was traced by itself, with a seed of its own
   double seconds = 0;                        // that they took
   bool cut_short = false;                    // there was no time for as many as it would have taken
 };
@@ -34,16 +35,23 @@ struct FreshTrace {
 // Relative to its light, as (3.6) weighs it; absent: one path does not tell.
 std::optional<double> noise_of(const FreshTrace& traced, const Target& target);
 
-// With as many samples as were asked for; or else with as many as it takes until its noise hardly adds to that of the
-// target, or to what the lights leave unexplained, and no more than verification_samples(), nor than clock has time
-// for.
+// Of the lights, over all receivers (3.6): the squared noise of their trace, as far as it is known, is taken out, and no
+// less is left than that is known to.
+double error_without_noise(const FreshTrace& traced, const Target& target);
+
+// With as many samples as were asked for; or else with as many as it takes until its noise is no more than that of the
+// target, or little beside what the lights leave unexplained, and no more than verification_samples(), nor than clock
+// has time for.
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
                                   const SolveOptions& options, const renderer::Control& control,
                                   const StageClock& clock);
-// The same in two: an eighth of the samples, or where time is limited as few as may be, by which one may decide against
-// the lights, and then the others.
+// The same in two: no more than an eighth of the samples, or where time is limited as few as may be, by which one may
+// decide against the lights, and then the others.
 FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
                             const renderer::Control& control, const StageClock& clock);
+// As another trace, part by part: of lights nearby it has nearly the same noise.
+FreshTrace trace_by_the_same_paths(const SolveProblem& problem, const renderer::Lights& lights, const FreshTrace& other,
+                                   const SolveOptions& options, const renderer::Control& control);
 FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
                      const SolveOptions& options, const renderer::Control& control, const StageClock& clock);
 

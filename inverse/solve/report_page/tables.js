@@ -13,7 +13,7 @@ function fillFigures(result) {
     ["Error by the cache", percent(result.relative_l2_cached)],
     ["Before the last optimisation", percent(result.initial_relative_l2)],
     ["Noise of the target", result.target_noise > 0 ? percent(result.target_noise) : "not known"],
-    ["Noise of the fresh trace", isNumber(result.verification_noise) ? percent(result.verification_noise) : "not known"],
+    ["Its noise, taken out", isNumber(result.verification_noise) ? percent(result.verification_noise) : "not known"],
     ["Lights", String(result.lights.length)],
     ["Important vertices", String(result.important_vertices)],
     ["Time", duration(result.stage_seconds.reduce((sum, seconds) => sum + seconds, 0))],
