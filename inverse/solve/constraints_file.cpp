@@ -63,6 +63,21 @@ std::array<double, 2> read_kelvin(const JsonField& field) {
   return kelvin;
 }
 
+void refuse_contradictions(const JsonField& root, const LightConstraints& c) {
+  if (c.lights && c.max_lights && *c.lights > *c.max_lights) {
+    root.member("lights").fail(fmt::format("lights {} and max_lights {} exclude each other", *c.lights, *c.max_lights),
+                               "no more, or one of the two");
+  }
+  if (!c.keep_positions) return;
+  const JsonField field = root.member("keep_positions");
+  const auto refuse = [&](bool other, const char* name) {
+    if (other) field.fail(fmt::format("keep_positions and {} exclude each other", name), "one of the two");
+  };
+  refuse(c.keep_lights, "keep_lights");
+  refuse(c.lights.has_value(), "lights");
+  refuse(c.max_lights.has_value(), "max_lights");
+}
+
 LightConstraints read_constraints(const JsonField& root) {
   static constexpr std::string_view kKnown[] = {"lights",         "max_lights",    "regions", "surface_distance",
                                                 "light_distance", "max_intensity", "kelvin",  "one_color",
@@ -87,6 +102,7 @@ LightConstraints read_constraints(const JsonField& root) {
   flag("one_color", c.one_color);
   flag("keep_lights", c.keep_lights);
   flag("keep_positions", c.keep_positions);
+  refuse_contradictions(root, c);
   return c;
 }
 

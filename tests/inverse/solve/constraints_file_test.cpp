@@ -65,6 +65,10 @@ TEST(ConstraintsFile, FaultsAreNamedByPlace) {
       {R"({"kelvin":[10,2700]})", "kelvin[0]"},
       {R"({"max_intensity":0})", "max_intensity"},
       {R"({"one_color":1})", "true or false"},
+      {R"({"lights":3,"max_lights":2})", "lights 3 and max_lights 2 exclude each other"},
+      {R"({"lights":3,"keep_positions":true})", "keep_positions and lights exclude"},
+      {R"({"max_lights":3,"keep_positions":true})", "keep_positions and max_lights exclude"},
+      {R"({"keep_lights":true,"keep_positions":true})", "keep_positions and keep_lights exclude"},
       {"{", "parse error"},
   };
   for (const auto& [text, part] : faults) EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
