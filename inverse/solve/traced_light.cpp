@@ -75,7 +75,8 @@ struct Tracing {
   }
   FreshTrace with_more(FreshTrace traced, int samples) const {
     if (samples <= 0) return traced;
-    return joined(std::move(traced), part(samples, traced.parts.size()));
+    const FreshTrace more = part(samples, traced.parts.size());
+    return joined(std::move(traced), more);
   }
   FreshTrace with_enough(FreshTrace traced, int most, const StageClock& clock) const {
     while (true) {
