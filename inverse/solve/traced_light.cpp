@@ -87,9 +87,10 @@ struct Tracing {
       more = std::min(std::max(more, traced.samples / kMoreOfSamples), most - traced.samples);
       // At the speed of those before.
       const double in_time = std::floor(traced.samples * clock.seconds_left() / std::max(traced.seconds, 1e-6));
-      traced.cut_short = more > in_time;
-      traced = with_more(std::move(traced), traced.cut_short ? int(in_time) : more);
-      if (traced.cut_short) return traced;
+      const bool cut_short = more > in_time;
+      traced.cut_short = cut_short;
+      traced = with_more(std::move(traced), cut_short ? int(in_time) : more);
+      if (cut_short) return traced;
     }
   }
 };
@@ -129,9 +130,7 @@ FreshTrace trace_by_the_same_paths(const SolveProblem& problem, const renderer::
                                    const SolveOptions& options, const renderer::Control& control) {
   const Tracing tracing{problem, lights, options, control};
   FreshTrace traced = tracing.part(other.parts.front(), 0);
-  while (traced.parts.size() < other.parts.size()) {
-    traced = tracing.with_more(std::move(traced), other.parts[traced.parts.size()]);
-  }
+  for (std::size_t k = 1; k < other.parts.size(); ++k) traced = tracing.with_more(std::move(traced), other.parts[k]);
   return traced;
 }
 
