@@ -30,13 +30,9 @@ inverse::Mount parse_mount(const std::string& text) {
   return {text.substr(0, comma), parse_number(std::string_view(text).substr(comma + 1), kNotNegative)};
 }
 
-void refuse_both(bool one, bool other, const char* names) {
-  if (one && other) throw UsageError(fmt::format("{} exclude each other", names));
-}
-
-void refuse_more_than_most(const inverse::LightConstraints& c) {
-  if (!c.lights || !c.max_lights || *c.lights <= *c.max_lights) return;
-  throw UsageError(fmt::format("--lights {} and --max-lights {} exclude each other", *c.lights, *c.max_lights));
+std::string option_of(std::string key) {
+  std::replace(key.begin(), key.end(), '_', '-');
+  return "--" + key;
 }
 
 }  // namespace
@@ -72,10 +68,7 @@ inverse::LightConstraints choose_constraints(const ConstraintOptions& options, c
   inverse::LightConstraints constraints = options.given;
   constraints.regions = grid.regions;
   if (!options.file.empty()) constraints = merged(constraints, inverse::load_constraints(options.file));
-  refuse_both(constraints.keep_lights, constraints.keep_positions, "--keep-lights and --keep-positions");
-  refuse_both(constraints.lights.has_value(), constraints.keep_positions, "--lights and --keep-positions");
-  refuse_both(constraints.max_lights.has_value(), constraints.keep_positions, "--max-lights and --keep-positions");
-  refuse_more_than_most(constraints);
+  if (const auto contradiction = find_contradiction(constraints, option_of)) throw UsageError(contradiction->reason);
   return constraints;
 }
 

@@ -63,21 +63,6 @@ std::array<double, 2> read_kelvin(const JsonField& field) {
   return kelvin;
 }
 
-void refuse_contradictions(const JsonField& root, const LightConstraints& c) {
-  if (c.lights && c.max_lights && *c.lights > *c.max_lights) {
-    root.member("lights").fail(fmt::format("lights {} and max_lights {} exclude each other", *c.lights, *c.max_lights),
-                               "no more, or one of the two");
-  }
-  if (!c.keep_positions) return;
-  const JsonField field = root.member("keep_positions");
-  const auto refuse = [&](bool other, const char* name) {
-    if (other) field.fail(fmt::format("keep_positions and {} exclude each other", name), "one of the two");
-  };
-  refuse(c.keep_lights, "keep_lights");
-  refuse(c.lights.has_value(), "lights");
-  refuse(c.max_lights.has_value(), "max_lights");
-}
-
 LightConstraints read_constraints(const JsonField& root) {
   static constexpr std::string_view kKnown[] = {"lights",         "max_lights",    "regions", "surface_distance",
                                                 "light_distance", "max_intensity", "kelvin",  "one_color",
@@ -102,7 +87,8 @@ LightConstraints read_constraints(const JsonField& root) {
   flag("one_color", c.one_color);
   flag("keep_lights", c.keep_lights);
   flag("keep_positions", c.keep_positions);
-  refuse_contradictions(root, c);
+  const auto contradiction = find_contradiction(c, std::identity{});
+  if (contradiction) root.member(contradiction->key).fail(contradiction->reason, "one of the two");
   return c;
 }
 
@@ -110,24 +96,6 @@ LightConstraints read_constraints(const JsonField& root) {
 
 LightConstraints load_constraints(const std::filesystem::path& path) {
   return read_json_file(path, "a file of constraints in JSON", read_constraints);
-}
-
-LightConstraints merged(const LightConstraints& stronger, const LightConstraints& weaker) {
-  LightConstraints both = stronger;
-  const auto fill = [](auto& value, const auto& otherwise) {
-    if (!value) value = otherwise;
-  };
-  fill(both.lights, weaker.lights);
-  fill(both.max_lights, weaker.max_lights);
-  fill(both.surface_distance, weaker.surface_distance);
-  fill(both.light_distance, weaker.light_distance);
-  fill(both.max_intensity, weaker.max_intensity);
-  fill(both.kelvin, weaker.kelvin);
-  if (both.regions.empty() && both.mounts.empty()) both.regions = weaker.regions, both.mounts = weaker.mounts;
-  both.one_color |= weaker.one_color;
-  both.keep_lights |= weaker.keep_lights;
-  both.keep_positions |= weaker.keep_positions;
-  return both;
 }
 
 }  // namespace chiaro::inverse

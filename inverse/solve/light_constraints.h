@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +23,17 @@ struct LightConstraints {
   bool one_color = false, keep_lights = false, keep_positions = false;
 };
 
-// Error, naming the key, where a value is missing, of the wrong kind or out of range.
+// Two constraints that exclude each other, whatever the scene.
+struct Contradiction {
+  std::string key;     // of the one that had better go, as a file has it
+  std::string reason;  // names both
+};
+
+// name: what the user calls the constraint of a key.
+std::optional<Contradiction> find_contradiction(const LightConstraints& constraints,
+                                                const std::function<std::string(const std::string& key)>& name);
+
+// Error, naming the key, where a value is missing, of the wrong kind or out of range, or two exclude each other.
 LightConstraints load_constraints(const std::filesystem::path& path);
 
 // Those of `stronger` where it has any, else those of `weaker`; regions and mounts belong together.

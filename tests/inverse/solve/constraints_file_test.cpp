@@ -74,23 +74,5 @@ TEST(ConstraintsFile, FaultsAreNamedByPlace) {
   for (const auto& [text, part] : faults) EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
 }
 
-TEST(ConstraintsFile, OptionsComeFirst) {
-  LightConstraints options, file;
-  options.max_lights = 2;
-  options.regions = {{"Here"}};
-  file.max_lights = 7;
-  file.light_distance = 1;
-  file.regions = {{"There"}};
-  file.mounts = {{"Ceiling", 0.1}};
-  file.one_color = true;
-  const LightConstraints both = merged(options, file);
-  EXPECT_EQ(both.max_lights, 2);
-  EXPECT_EQ(both.light_distance, 1);
-  ASSERT_EQ(both.regions.size(), 1U);
-  EXPECT_EQ(both.regions[0].text, "Here");
-  EXPECT_TRUE(both.mounts.empty());
-  EXPECT_TRUE(both.one_color);
-}
-
 }  // namespace
 }  // namespace chiaro::inverse
