@@ -16,8 +16,7 @@ constexpr std::size_t kSome = 4000;     // receivers that tell where a further l
 constexpr std::size_t kMostSplits = 2;  // that are followed
 constexpr double kWorthTrying = 0.004;  // of the squared error, that it takes off where it is proposed …
 constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
-constexpr double kPromising = 3.5;      // … and standard errors, by all receivers, once some have led it …
-constexpr double kSignificant = 4;      // … and once all have: the receivers that tell are those of the fit
+constexpr double kSignificant = 3.5;    // … and standard errors, by all receivers; one too many goes by the next trace
 
 // Lights, and what each brings by bounces, at 1 cd, to some and to all receivers.
 struct Candidate {
@@ -92,7 +91,7 @@ std::optional<LightEstimates> with_further_light(const renderer::RayTracer& trac
   const Column led = brought_by(now);
   std::erase_if(candidates, [&](Candidate& more) {
     more.descend_by_some(some);
-    return !all.explains_more(brought_by(more), led, kGain, kPromising);
+    return !all.explains_more(brought_by(more), led, kGain, kSignificant);
   });
   if (candidates.empty()) return {};
   now.descend_by_all(all);
