@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include "inverse/solve/choose_light_count.h"
@@ -26,7 +27,6 @@ constexpr std::size_t kAlwaysLed = 8;   // … of as many lights, and of more wh
 constexpr double kNegligible = 1e-3;    // contribution to the target's norm
 constexpr double kHardlySeen = 1e-2;    // the same, of a light that may stand anywhere
 constexpr double kSignificant = 10;     // times what noise alone makes of a light: transport errs, too
-constexpr double kNearNoise = 1.1;      // times it, or less, of an error: no lights leave less
 constexpr std::size_t kMore = 2;        // lights that few important vertices may have hidden
 
 LightEstimates joined(LightEstimates some, const LightEstimates& others) {
@@ -46,21 +46,21 @@ LightEstimates kept_to_rules(const LightResponse& response, const Observations& 
   return lights;
 }
 
-// What a search chose by interpolated light, led on without interpolation. Where that leaves more than noise the search
-// may have been misled to lights that make good what interpolation errs by: of fewer, in the right places, less may be
-// left then. Of these the search becomes one that chose them.
-PolishedLights polish_chosen(const JointSearch& search, const Observations& last, bool fewer_may_do,
-                             LightCountResult& count, const StageClock& clock) {
-  PolishedLights best = polish_lights(search.exact, search.response, last, count.lights, clock);
-  while (fewer_may_do && count.lights.size() > 1 && best.error > kNearNoise * last.noise && !clock.out_of_time()) {
-    LightEstimates& fewer = count.sets[count.lights.size() - 2];
-    if (fewer.empty()) break;
-    PolishedLights polished = polish_lights(search.exact, search.response, last, fewer, clock);
-    if (!(polished.error < best.error)) break;
-    best = std::move(polished);
-    count.lights = fewer = best.lights;
-  }
-  return best;
+// The search becomes one that chose fewer lights, these.
+void choose_fewer(const JointSearch& search, const Observations& remaining, const LightEstimates& lights,
+                  LightCountResult& count) {
+  count.lights = count.sets[lights.size() - 1] = lights;
+  count.error = relative_error(remaining, illumination_of(search.response, lights));
+  if (count.held_out.size() > 0) count.held_out = HeldOutSets(*search.held_out, 0).residuals(lights);
+}
+
+// Where interpolated light misled the search fewer lights may do, if no number was asked for.
+PolishedLights polish_chosen(const JointSearch& search, const Observations& last, const LightCountResult& count,
+                             const StageClock& clock) {
+  const std::span<const LightEstimates> sets(count.sets.data(), count.lights.size());
+  return search.options.exact_lights > 0 || count.lights.empty()
+             ? polish_lights(search.exact, search.response, last, count.lights, clock)
+             : polish_fewest(search.exact, search.response, last, sets, clock);
 }
 
 // Without what is known of its important vertices.
@@ -266,12 +266,8 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   // The last descents are by (3.6) itself, which the result is judged by; but not where lights beside surfaces make it
   // blind to all others.
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
-  const std::size_t chosen = count.lights.size();
-  PolishedLights polished = polish_chosen(search, last, options.exact_lights == 0, count, clock);
-  if (count.lights.size() < chosen) {
-    count.error = relative_error(remaining, illumination_of(response, count.lights));
-    if (count.held_out.size() > 0) count.held_out = HeldOutSets(*search.held_out, 0).residuals(count.lights);
-  }
+  PolishedLights polished = polish_chosen(search, last, count, clock);
+  if (polished.started_with < count.lights.size()) choose_fewer(search, remaining, polished.lights, count);
   found.error_curve = error_curve_of(response, search.reported, beside_surfaces, count);
   clock.finish("polish",
                {{"lights", double(count.lights.size())}, {"rounds", polished.rounds}, {"relative_l2", polished.error}});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "inverse/solve/settle_positions.h"
 
@@ -9,7 +10,8 @@ namespace chiaro::inverse {
 namespace {
 
 constexpr int kRounds = 4;
-constexpr double kAtRest = 2e-4;  // of the region's diagonal
+constexpr double kNearNoise = 1.1;  // times it, or less, of an error: no lights leave less
+constexpr double kAtRest = 2e-4;    // of the region's diagonal
 constexpr JointRefinementOptions kDescent{.max_iterations = 15, .function_tolerance = 1e-4};
 constexpr double kSettle = 3e-3;  // first steps across shadow edges, of the region's diagonal
 
@@ -24,7 +26,7 @@ double largest_move(const LightEstimates& a, const LightEstimates& b) {
 
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start, const StageClock& clock) {
-  PolishedLights polished{start, 0, 0};
+  PolishedLights polished{start, 0, 0, start.size()};
   const double diagonal = double(response.grid().region.diagonal());
   double move = std::numeric_limits<double>::infinity();
   while (move > kAtRest * diagonal && polished.rounds < kRounds && !clock.out_of_time()) {
@@ -40,6 +42,19 @@ PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& re
   polished.lights = std::move(settled.lights);
   polished.error = settled.error;
   return polished;
+}
+
+PolishedLights polish_fewest(const ExactIndirect& exact, const LightResponse& response,
+                             const Observations& observations, std::span<const LightEstimates> sets,
+                             const StageClock& clock) {
+  PolishedLights best = polish_lights(exact, response, observations, sets.back(), clock);
+  for (std::size_t count = sets.size() - 1; count > 0 && !sets[count - 1].empty(); --count) {
+    if (best.error <= kNearNoise * observations.noise || clock.out_of_time()) break;
+    PolishedLights fewer = polish_lights(exact, response, observations, sets[count - 1], clock);
+    if (!(fewer.error < best.error)) break;
+    best = std::move(fewer);
+  }
+  return best;
 }
 
 }  // namespace chiaro::inverse

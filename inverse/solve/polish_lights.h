@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "inverse/solve/exact_indirect.h"
 #include "inverse/solve/refine_joint.h"
 #include "inverse/solve/stage_clock.h"
@@ -12,6 +14,7 @@ struct PolishedLights {
   LightEstimates lights;
   double error = 0;  // (3.6), no interpolation
   int rounds = 0;
+  std::size_t started_with = 0;  // lights
 };
 
 // The last descent over the important vertices, without interpolation: indirect light is gathered at the lights' very
@@ -20,5 +23,12 @@ struct PolishedLights {
 // stay where they are.
 PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& response,
                              const Observations& observations, const LightEstimates& start, const StageClock& clock);
+
+// The same of what a search by interpolated light chose, the last of its sets of 1, 2, … lights. Where that leaves more
+// than noise the search may have been misled to lights that make good what interpolation errs by: of fewer, in the
+// right places, less may be left then, and these are taken.
+PolishedLights polish_fewest(const ExactIndirect& exact, const LightResponse& response,
+                             const Observations& observations, std::span<const LightEstimates> sets,
+                             const StageClock& clock);
 
 }  // namespace chiaro::inverse

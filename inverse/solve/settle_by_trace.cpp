@@ -222,8 +222,8 @@ class Settler {
 
   LightsByTrace settle(const LightEstimates& lights) {
     LightsByTrace by_trace = come_to_rest_from(lights);
-    const double allowed = kAstray * kAstray * as_found_->beyond_noise + kNoiseOfNoise * as_found_->noise;
-    by_trace.went_astray = squared_error_of(by_trace.traced).beyond_noise > allowed;
+    const double allowed = kAstray * kAstray * as_found_->beyond_noise() + kNoiseOfNoise * as_found_->noise;
+    by_trace.went_astray = squared_error_of(by_trace.traced, problem_.target).beyond_noise() > allowed;
     return by_trace;
   }
 
@@ -260,22 +260,13 @@ class Settler {
 
   bool out_of_time() const { return clock_.out_of_time(); }
 
-  struct SquaredError {
-    double beyond_noise = 0, noise = 0;  // of the trace
-  };
-  SquaredError squared_error_of(const FreshTrace& traced) const {
-    const double all = relative_l2(traced.all.value, problem_.target.illumination, problem_.target.weight);
-    const double noise = noise_of(traced, problem_.target).value_or(0);
-    return {std::max(0.0, all * all - noise * noise), noise * noise};
-  }
-
   void finish(const char* stage, std::size_t lights, bool rests) {
     seconds_ += clock_.finish(stage, {{"lights", double(lights)}, {"at_rest", rests ? 1 : 0}});
   }
 
   FreshTrace trace_first_part_of(const LightEstimates& lights) {
     FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_, clock_);
-    if (!as_found_) as_found_ = squared_error_of(traced);
+    if (!as_found_) as_found_ = squared_error_of(traced, problem_.target);
     clock_.finish("verification", verification_figures(traced, problem_.target));
     return traced;
   }

@@ -55,12 +55,10 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
 }
 
 // Relative to the target.
-double noise_that_does_not_matter(const SolveProblem& problem, const FreshTrace& traced) {
-  const Target& target = problem.target;
-  const double noise = noise_of(traced, target).value_or(0), of_target = target_noise(target);
-  const double error = relative_l2(traced.all.value, target.illumination, target.weight);
-  const double unexplained = std::sqrt(std::max(0.0, error * error - noise * noise - of_target * of_target));
-  return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * unexplained);
+double noise_that_does_not_matter(const FreshTrace& traced, const Target& target) {
+  const double of_target = target_noise(target);
+  const double unexplained = std::max(0.0, squared_error_of(traced, target).beyond_noise() - of_target * of_target);
+  return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * std::sqrt(unexplained));
 }
 
 // What a trace is of, and by what means.
@@ -81,7 +79,7 @@ struct Tracing {
   FreshTrace with_enough(FreshTrace traced, int most, const StageClock& clock) const {
     while (true) {
       const double noise = noise_of(traced, problem.target).value_or(0);
-      const double may_be = noise_that_does_not_matter(problem, traced);
+      const double may_be = noise_that_does_not_matter(traced, problem.target);
       int more = renderer::samples_for_noise(traced.samples, noise, may_be, most) - traced.samples;
       if (more <= 0) return traced;
       more = std::min(std::max(more, traced.samples / kMoreOfSamples), most - traced.samples);
@@ -150,9 +148,9 @@ FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::L
   return completed(problem, lights, std::move(first), options, control, clock);
 }
 
-double error_without_noise(const FreshTrace& traced, const Target& target) {
-  const double error = relative_l2(traced.all.value, target.illumination, target.weight);
+SquaredError squared_error_of(const FreshTrace& traced, const Target& target) {
   const std::vector<Vec3f>& standard_error = traced.all.standard_error;
+  const double error = relative_l2(traced.all.value, target.illumination, target.weight);
   double noise = 0, spread = 0, wanted = 0;
   for (std::size_t i = 0; i < standard_error.size(); ++i) {
     const double squared = double(target.weight[i]) * squared_norm(standard_error[i]);
@@ -160,9 +158,13 @@ double error_without_noise(const FreshTrace& traced, const Target& target) {
     spread += squared * squared;
     wanted += double(target.weight[i]) * squared_norm(target.illumination[i]);
   }
-  if (!(noise > 0)) return error;
-  const double known_to = std::sqrt(2 * spread);
-  return std::min(error, std::sqrt(std::max(error * error - noise / wanted, known_to / wanted)));
+  if (!(noise > 0)) return {error * error};
+  return {error * error, noise / wanted, std::sqrt(2 * spread) / wanted};
+}
+
+double error_without_noise(const FreshTrace& traced, const Target& target) {
+  const SquaredError error = squared_error_of(traced, target);
+  return std::sqrt(std::min(error.all, std::max(error.beyond_noise(), error.noise_known_to)));
 }
 
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result) {

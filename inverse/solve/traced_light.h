@@ -1,6 +1,7 @@
 #pragma once
 // What a solve traces by itself, beside the transport of a bake.
 
+#include <algorithm>
 #include <optional>
 
 #include "inverse/solve/solve.h"
@@ -35,8 +36,17 @@ struct FreshTrace {
 // Relative to its light, as (3.6) weighs it; absent: one path does not tell.
 std::optional<double> noise_of(const FreshTrace& traced, const Target& target);
 
-// Of the lights, over all receivers (3.6): the squared noise of their trace, as far as it is known, is taken out, and no
-// less is left than that is known to.
+// Of a trace, relative to the target, as (3.6) weighs it.
+struct SquaredError {
+  double all = 0;
+  double noise = 0;           // what its own noise is expected to bring …
+  double noise_known_to = 0;  // … give or take so much
+  double beyond_noise() const { return std::max(0.0, all - noise); }
+};
+SquaredError squared_error_of(const FreshTrace& traced, const Target& target);
+
+// Of the lights, over all receivers (3.6): the squared noise of their trace, as far as it is known, is taken out, and
+// no less is left than that is known to.
 double error_without_noise(const FreshTrace& traced, const Target& target);
 
 // With as many samples as were asked for; or else with as many as it takes until its noise is no more than that of the
