@@ -27,6 +27,15 @@ void enter_folder() {
   input_file("strokes.json", kStrokes);
 }
 
+// Fewer receivers than by default, so that no input takes seconds.
+void make_coarse(std::vector<std::string>& arguments) {
+  constexpr std::array kWithReceivers{"receivers", "illuminate", "paint", "bake"};
+  const auto is_edge = [](const std::string& argument) { return argument.rfind("--max-edge", 0) == 0; };
+  if (arguments.size() < 2 || std::any_of(arguments.begin(), arguments.end(), is_edge)) return;
+  if (std::find(kWithReceivers.begin(), kWithReceivers.end(), arguments[1]) == kWithReceivers.end()) return;
+  arguments.insert(arguments.end(), {"--max-edge", "0.2"});
+}
+
 std::vector<std::string> arguments_of(std::string_view input) {
   std::vector<std::string> arguments{"chiaro"};
   while (!input.empty()) {
@@ -44,7 +53,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace chiaro;
   static const bool entered = (fuzz::enter_folder(), true);
   CHIARO_CHECK(entered);
-  const std::vector<std::string> arguments = fuzz::arguments_of(fuzz::text_of(data, size));
+  std::vector<std::string> arguments = fuzz::arguments_of(fuzz::text_of(data, size));
+  fuzz::make_coarse(arguments);
   std::vector<const char*> pointers;
   for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
   const int code = cli::run_program(int(pointers.size()), pointers.data());
