@@ -1,11 +1,13 @@
 #include "inverse/solve/further_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/insertion.h"
+#include "inverse/solve/refine_joint.h"
 #include "inverse/solve/split_lights.h"
 #include "inverse/transport/receivers.h"
 
@@ -16,15 +18,25 @@ constexpr std::size_t kSome = 4000;     // receivers that tell where a further l
 constexpr std::size_t kMostSplits = 2;  // that are followed
 constexpr double kWorthTrying = 0.004;  // of the squared error, that it takes off where it is proposed …
 constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
-constexpr double kSignificant = 3.5;    // … and standard errors, by all receivers; one too many goes by the next trace
+constexpr double kSignificant = 3.5;  // … and standard errors, by all receivers; one too many goes by the next trace
+constexpr JointRefinementOptions kDescent{.max_iterations = 20, .function_tolerance = 1e-4};
+
+// A settling's own steps (instrumental_fit.h) start near where they end; from farther away they may come to anywhere.
+void descend(const SettlingBench& bench, const std::vector<Column>& indirect, LightEstimates& lights) {
+  LightEstimates led =
+      refine_joint(bench.response, bench.observations, with_corrections(lights, indirect), kDescent).lights;
+  if (led.empty()) return;
+  for (LightEstimate& light : led) light.correction = Column();
+  lights = std::move(led);
+}
 
 // Lights, and what each brings by bounces, at 1 cd, to some and to all receivers.
 struct Candidate {
   LightEstimates lights;
   std::vector<Column> to_some, to_all;
 
-  void descend_by_some(const SettlingBench& some) { some.descend(to_some, lights); }
-  void descend_by_all(const SettlingBench& all) { all.descend(to_all, lights); }
+  void descend_by_some(const SettlingBench& some) { descend(some, to_some, lights); }
+  void descend_by_all(const SettlingBench& all) { descend(all, to_all, lights); }
 };
 
 std::vector<Column> rows_of(const std::vector<Column>& columns, const std::vector<std::size_t>& rows) {
@@ -52,9 +64,27 @@ Candidate with_one_more(const Candidate& before, const LightEstimate& light) {
   return more;
 }
 
-// Sets of one light more that take this part off the squared error where they are proposed.
-std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& before,
-                                    const std::vector<Eigen::Vector3d>& places) {
+std::size_t nearest_of(const LightEstimates& lights, const Eigen::Vector3d& place) {
+  const auto nearer = [&](const LightEstimate& a, const LightEstimate& b) {
+    return (a.position - place).squaredNorm() < (b.position - place).squaredNorm();
+  };
+  return std::size_t(std::min_element(lights.begin(), lights.end(), nearer) - lights.begin());
+}
+
+// Other lights, of which each brings by bounces what the nearest of those before does.
+Candidate in_place_of(const Candidate& before, const LightEstimates& others) {
+  Candidate candidate;
+  for (const LightEstimate& light : others) {
+    const std::size_t nearest = nearest_of(before.lights, light.position);
+    candidate.lights.push_back({light.position, light.intensity});
+    candidate.to_some.push_back(before.to_some[nearest]);
+    candidate.to_all.push_back(before.to_all[nearest]);
+  }
+  return candidate;
+}
+
+// Sets of one light more that take this part off the squared error where they are proposed, or that a search found.
+std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& before, const FurtherLights& further) {
   const LightEstimates lights = with_corrections(before.lights, before.to_some);
   const Observations left = less(some.observations, some.response, lights);
   const double squared_error = std::pow(some.norm(left.wanted), 2);
@@ -63,8 +93,11 @@ std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& 
     const double squared = std::pow(split.error * some.observations.target_norm, 2);
     if (squared < (1 - kWorthTrying) * squared_error) candidates.push_back(in_parts(before, std::move(split)));
   }
-  const auto missed = propose_directly_lit(some.response, left, places, kWorthTrying * squared_error);
+  const auto missed = propose_directly_lit(some.response, left, further.places, kWorthTrying * squared_error);
   if (missed) candidates.push_back(with_one_more(before, *missed));
+  for (const LightEstimates& set : further.sets) {
+    if (set.size() == lights.size() + 1) candidates.push_back(in_place_of(before, set));
+  }
   return candidates;
 }
 
@@ -72,13 +105,13 @@ std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& 
 
 std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& all,
                                                  const std::vector<Column>& indirect, const LightEstimates& lights,
-                                                 const std::vector<Eigen::Vector3d>& places) {
+                                                 const FurtherLights& further) {
   if (lights.empty()) return {};
   const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
   const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
   const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows)};
   Candidate now{lights, rows_of(indirect, rows), indirect};
-  std::vector<Candidate> candidates = worth_trying(some, now, places);
+  std::vector<Candidate> candidates = worth_trying(some, now, further);
   if (candidates.empty()) return {};
 
   // Descents end here or there beside a shadow's edge: the lights of before come down as often. Most of the receivers

@@ -6,11 +6,17 @@
 
 namespace chiaro::inverse {
 
+// Where a further light may be sought.
+struct FurtherLights {
+  std::vector<Eigen::Vector3d> places;  // where one may have been missed
+  std::vector<LightEstimates> sets;     // others that a search found, of any number of lights
+};
+
 // One light more: one was missed, or one of them has stood for two, which many receivers tell where a thousand could
-// not. Nothing where none clearly has. indirect[j]: what light j brings by bounces at 1 cd, and so do its parts; of one
-// that was missed nothing is known. places: where one may have been missed.
+// not. Nothing where none clearly has. indirect[j]: what light j brings by bounces at 1 cd, and so do its parts, and
+// lights of another set that it is the nearest to; of one that was missed nothing is known.
 std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& bench,
                                                  const std::vector<Column>& indirect, const LightEstimates& lights,
-                                                 const std::vector<Eigen::Vector3d>& places);
+                                                 const FurtherLights& further);
 
 }  // namespace chiaro::inverse

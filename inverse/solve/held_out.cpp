@@ -86,6 +86,10 @@ double HeldOut::error(const Eigen::VectorXd& residuals) const {
   return (by_objective * residuals.array()).matrix().norm() / judged_.target_norm;
 }
 
+double HeldOut::relative_l2(const Eigen::VectorXd& residuals) const {
+  return residuals.norm() / observations_.target_norm;
+}
+
 Eigen::VectorXd HeldOut::residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const {
   Column left = -observations_.wanted;
   for (std::size_t j = 0; j < lights.size(); ++j) {

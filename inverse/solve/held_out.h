@@ -29,8 +29,9 @@ class HeldOut {
   void descend(const LightResponse& search, LightEstimates& lights, const std::vector<const Column*>& indirect) const;
   // Weighted, of each receiver. Their squares would be those of a few receivers beside lights.
   Eigen::VectorXd residuals(const LightEstimates& lights, const std::vector<const Column*>& indirect) const;
-  // By the objective.
+  // By the objective, and (3.6).
   double error(const Eigen::VectorXd& residuals) const;
+  double relative_l2(const Eigen::VectorXd& residuals) const;
   // Of the target's brightness, the part on receivers of which these residuals are a large part, and not by noise.
   double part_missed(const Eigen::VectorXd& residuals) const;
 

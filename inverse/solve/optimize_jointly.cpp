@@ -320,7 +320,8 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
           std::move(error_curve),
           !found.out_of_time && (far || tied || judged_otherwise),
           !found.out_of_time && !far && !tied && !judged_otherwise,
-          held};
+          held,
+          refitted && search.held_out != nullptr};
 }
 
 }  // namespace chiaro::inverse

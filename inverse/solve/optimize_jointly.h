@@ -20,6 +20,7 @@ struct Optimum {
   bool refits = false;   // the lights do not explain the target, or are tied together: their intensities come last
   bool settles = false;  // the lights explain the target, or nearly so, and each may move by itself …
   std::size_t held = 0;  // … but for so many of the first
+  bool curve_by_held_out = false;  // its errors are those at held-out receivers, or else at the important ones
 };
 
 // What the search has come to.

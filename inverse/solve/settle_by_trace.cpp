@@ -205,11 +205,24 @@ void come_to_rest(const AllowedPlaces& places, const LightEstimates& earlier, co
   }
 }
 
+// Without those that are held.
+FurtherLights further_lights(const LightResponse& search, const Optimum& found) {
+  FurtherLights further{search.places_near_grid_lights(), {}};
+  for (const LightSet& set : found.error_curve) {
+    LightEstimates lights = light_estimates(set.lights);
+    if (lights.size() <= found.held) continue;
+    lights.erase(lights.begin(), lights.begin() + std::ptrdiff_t(found.held));
+    further.sets.push_back(std::move(lights));
+  }
+  return further;
+}
+
 // The steps of settle_by_trace().
 class Settler {
  public:
   Settler(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
-          const LightResponse& search, const LightEstimates& found, std::size_t held, StageClock& clock)
+          const LightResponse& search, const LightEstimates& found, std::size_t held, FurtherLights further,
+          StageClock& clock)
       : problem_(problem),
         options_(options),
         control_(control),
@@ -218,7 +231,7 @@ class Settler {
         brightness_(brightness_of(all_, found)),
         with_(problem, all_, brightness_, kMany, held),
         on_the_way_(problem, all_, brightness_, kSome, held),
-        places_(search.places_near_grid_lights()) {}
+        further_(std::move(further)) {}
 
   LightsByTrace settle(const LightEstimates& lights) {
     LightsByTrace by_trace = come_to_rest_from(lights);
@@ -323,7 +336,7 @@ class Settler {
   bool add_further(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
     const bool may_add = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
     if (!may_add || further_lights_ == kMostFurther || out_of_time()) return false;
-    const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, places_);
+    const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, further_);
     if (!more) return false;
     ++further_lights_;
     lights.resize(with_.held);
@@ -347,10 +360,10 @@ class Settler {
   const DirectlyLit all_;             // receivers
   const Eigen::VectorXd brightness_;  // of each, under the lights as they were found
   const Settling with_, on_the_way_;
-  const std::vector<Eigen::Vector3d> places_;  // where a light may have been missed
-  std::optional<FreshTrace> first_part_{};     // of the trace where the lights are in the end; absent: they moved since
-  std::optional<SquaredError> as_found_{};     // of the lights as they were found, by a first part
-  double seconds_ = 0;                         // without the traces
+  const FurtherLights further_;
+  std::optional<FreshTrace> first_part_{};  // of the trace where the lights are in the end; absent: they moved since
+  std::optional<SquaredError> as_found_{};  // of the lights as they were found, by a first part
+  double seconds_ = 0;                      // without the traces
   int further_lights_ = 0;
 };
 
@@ -370,7 +383,8 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   if (!is_worth_it(options, problem.target.receivers.size(), lights.size())) {
     return trace_lights(problem, options, control, all, clock);
   }
-  LightsByTrace settled = Settler(problem, apart, control, search, lights, found.held, clock).settle(lights);
+  Settler settler(problem, apart, control, search, lights, found.held, further_lights(search, found), clock);
+  LightsByTrace settled = settler.settle(lights);
   if (lights.size() == all.size()) return settled;
   settled.lights = as_many_as_asked_for(std::move(settled.lights), all.size());
   settled.intervals.reset();

@@ -14,7 +14,8 @@ struct Split {
 
 // Of each light one such set: its parts stand to either side of its own place, or there and beside, in the direction in
 // which the residual asks for it most (the least eigenvalue of the misfit's second derivative, that of the Gauss–Newton
-// matrix left out). Best first, with intensities fitted, at most `most`.
+// matrix left out), or in that in which the channels, each by itself, would have it go. Best first, with intensities
+// fitted, at most `most`.
 // Source: Wu, Wang, Liu, Splitting steepest descent for growing neural architectures, 2019.
 std::vector<Split> propose_splits(const LightResponse& response, const Observations& observations,
                                   const LightEstimates& lights, std::size_t most);

@@ -271,6 +271,26 @@ TEST(SplitLights, LeavesTheBrighterWhereItStands) {
   EXPECT_LT(farthest_from(known, positions_of(two.lights)), 0.01 * problem.diagonal());
 }
 
+// What is left of them may ask for nothing clearly, but each channel would have the one that stands for both go
+// elsewhere.
+TEST(SplitLights, PartsLightsOfDifferentColorsAlongTheLineBetweenThem) {
+  constexpr int kPairs = 60;
+  int along = 0;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    renderer::Sampler sampler(std::uint64_t(pair), 0, 0);
+    const auto somewhere = [&] { return to_eigen(random_position({{0.8F, 1.6F, 0.8F}, {3.2F, 2.6F, 3.2F}}, sampler)); };
+    const Vector3d middle = somewhere();
+    const Vector3d half = 0.4 * (somewhere() - somewhere()).normalized();
+    const LightEstimates known{{middle + half, {12, 3, 2}}, {middle - half, {2, 4, 14}}};
+    const DirectProblem problem(known);
+    const JointRefinement one = refine_joint(problem.response(), problem.observations(), {{middle, Array3d::Ones()}});
+    const auto splits = propose_splits(problem.response(), problem.observations(), one.lights, 1);
+    const Vector3d apart = splits[0].lights[0].position - splits[0].lights[1].position;
+    along += std::abs(apart.normalized().dot(half.normalized())) > 0.9 ? 1 : 0;
+  }
+  EXPECT_GE(along, 55);
+}
+
 TEST(SplitLights, TriesTheLightThatStandsForTwoFirst) {
   const LightEstimates known{
       {{1.7, 1.5, 2}, {20, 12, 8}}, {{2.3, 1.6, 2.1}, {10, 18, 20}}, {{3.3, 2.4, 0.6}, {9, 9, 9}}};
