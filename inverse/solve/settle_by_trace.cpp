@@ -253,7 +253,7 @@ class Settler {
       if (any_hidden(bench, free)) return by_trace;
       descend(bench, free);
       const CarryAlong carried_along = [&](FreeLights& now) { carry_along_with(bench, first, lights, now); };
-      const bool last = round == kRounds + further_lights_;
+      const bool last = round == kRounds + added_lights_;
       const bool rests =
           at_rest(bench, free, kCarried * with_.near) &&
           (at_rest(bench, free, kVeryNear * with_.near) || come_along(bench, carried_along, free) || last);
@@ -335,10 +335,10 @@ class Settler {
   // True: one was missing, and there is one more, on its way.
   bool add_further(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
     const bool may_add = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
-    if (!may_add || further_lights_ == kMostFurther || out_of_time()) return false;
+    if (!may_add || added_lights_ == kMostFurther || out_of_time()) return false;
     const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, further_);
     if (!more) return false;
-    ++further_lights_;
+    ++added_lights_;
     lights.resize(with_.held);
     lights.insert(lights.end(), more->begin(), more->end());
     finish("settling", lights.size(), false);
@@ -364,7 +364,7 @@ class Settler {
   std::optional<FreshTrace> first_part_{};  // of the trace where the lights are in the end; absent: they moved since
   std::optional<SquaredError> as_found_{};  // of the lights as they were found, by a first part
   double seconds_ = 0;                      // without the traces
-  int further_lights_ = 0;
+  int added_lights_ = 0;
 };
 
 }  // namespace
