@@ -77,6 +77,7 @@ class DirectProblem {
     observations_.measure_target();
   }
 
+  const renderer::RayTracer& tracer() const { return corner_.tracer(); }
   const LightResponse& response() const { return *response_; }
   const ExactIndirect& exact() const { return *exact_; }
   const Observations& observations() const { return observations_; }
