@@ -140,11 +140,15 @@ bool names_a_constraint(const std::string& error, const LightConstraints& c) {
          (c.surface_distance && speaks_of("m from all surfaces")) || (c.light_distance && speaks_of("m apart")) ||
          (c.light_distance && speaks_of("m from those that stay")) || (ruled_places && speaks_of("region")) ||
          (!c.mounts.empty() && speaks_of("hang")) || (c.keep_positions && speaks_of("the scene's lights")) ||
-         (c.keep_positions && speaks_of("stays where it is")) || speaks_of("exclude each other");
+         (c.keep_positions && speaks_of("stays where it is"));
 }
 
-// But for places that light nothing.
-bool speaks_of_places(const std::string& error) { return error.find("lights the painted surfaces") == error.npos; }
+bool is_contradiction(const std::string& error) { return error.find("exclude each other") != error.npos; }
+
+// But for places that light nothing, or nothing that is wanted.
+bool speaks_of_places(const std::string& error) {
+  return error.find("lights the painted surfaces") == error.npos && error.find("closer to the target") == error.npos;
+}
 
 struct Tally {
   std::size_t solves = 0, infeasible = 0, refused = 0, unclear = 0, places_after_all = 0;
@@ -185,6 +189,10 @@ void tally_result(const Setting& setting, const SharedTarget& shared, const Cons
 }
 
 void tally_error(const Setting& setting, const ConstraintCase& c, const std::string& error, Tally& tally) {
+  if (is_contradiction(error)) {
+    ++tally.refused;
+    return;
+  }
   ++tally.infeasible;
   ++tally.errors[kind_of(error)];
   if (!names_a_constraint(error, c.constraints)) {
