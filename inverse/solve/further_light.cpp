@@ -18,16 +18,13 @@ constexpr std::size_t kSome = 4000;     // receivers that tell where a further l
 constexpr std::size_t kMostSplits = 2;  // that are followed
 constexpr double kWorthTrying = 0.004;  // of the squared error, that it takes off where it is proposed …
 constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
-constexpr double kSignificant = 3.5;  // … and standard errors, by all receivers; one too many goes by the next trace
+constexpr double kSignificant = 3.5;    // … and standard errors; one too many goes by the next trace
 constexpr JointRefinementOptions kDescent{.max_iterations = 20, .function_tolerance = 1e-4};
 
 // A settling's own steps (instrumental_fit.h) start near where they end; from farther away they may come to anywhere.
 void descend(const SettlingBench& bench, const std::vector<Column>& indirect, LightEstimates& lights) {
-  LightEstimates led =
-      refine_joint(bench.response, bench.observations, with_corrections(lights, indirect), kDescent).lights;
-  if (led.empty()) return;
-  for (LightEstimate& light : led) light.correction = Column();
-  lights = std::move(led);
+  lights = with_corrections(std::move(lights), indirect);
+  lead_lights(bench.response, bench.observations, kDescent, lights);
 }
 
 // Lights, and what each brings by bounces, at 1 cd, to some and to all receivers.

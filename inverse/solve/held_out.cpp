@@ -75,9 +75,7 @@ void HeldOut::descend(const LightResponse& search, LightEstimates& lights,
                       const std::vector<const Column*>& indirect) const {
   const DirectlyLit directly_lit(tracer_, search, response_.receivers());
   for (std::size_t j = 0; j < lights.size(); ++j) lights[j].correction = *indirect[j];
-  LightEstimates led = refine_joint(directly_lit.response(), judged_, lights, kDescent).lights;
-  if (!led.empty()) lights = std::move(led);  // none: there is no place for all
-  for (LightEstimate& light : lights) light.correction = Column();
+  lead_lights(directly_lit.response(), judged_, kDescent, lights);
 }
 
 double HeldOut::error(const Eigen::VectorXd& residuals) const {

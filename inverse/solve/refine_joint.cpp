@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>
@@ -310,6 +311,13 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   result.iterations = int(summary.iterations.size());
   result.termination = ceres::TerminationTypeToString(summary.termination_type);
   return result;
+}
+
+void lead_lights(const LightResponse& response, const Observations& observations, const JointRefinementOptions& options,
+                 LightEstimates& lights) {
+  LightEstimates led = refine_joint(response, observations, lights, options).lights;
+  if (!led.empty()) lights = std::move(led);
+  for (LightEstimate& light : lights) light.correction = Column();
 }
 
 }  // namespace chiaro::inverse

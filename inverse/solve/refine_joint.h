@@ -24,4 +24,9 @@ struct JointRefinementOptions {
 JointRefinement refine_joint(const LightResponse& response, const Observations& observations,
                              const LightEstimates& start, const JointRefinementOptions& options = {});
 
+// Leads lights there as if their corrections stayed the same, which they lose. They stay where there is no place for
+// all of them.
+void lead_lights(const LightResponse& response, const Observations& observations, const JointRefinementOptions& options,
+                 LightEstimates& lights);
+
 }  // namespace chiaro::inverse

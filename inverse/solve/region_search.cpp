@@ -260,9 +260,8 @@ Optimum RegionSearch::conclude(StageClock& clock) const {
                           : optimize_as_published(response, basis->published, tree, basis->options, clock);
 }
 
-double RegionSearch::error_in_curve(const Optimum& concluded, const LightEstimates& lights) const {
-  return concluded.curve_by_held_out ? held_out_->relative_l2(HeldOutSets(*held_out_, 0).residuals(lights))
-                                     : relative_error(reported, illumination_of(response, lights));
+double RegionSearch::held_out_error(const LightEstimates& lights) const {
+  return held_out_->relative_l2(HeldOutSets(*held_out_, 0).residuals(lights));
 }
 
 }  // namespace chiaro::inverse

@@ -48,8 +48,8 @@ class RegionSearch {
 
   // The lights that are left. Once, at last.
   Optimum conclude(StageClock& clock) const;
-  // Of lights, (3.6), as the error curve of what was concluded has it.
-  double error_in_curve(const Optimum& concluded, const LightEstimates& lights) const;
+  // Of lights, (3.6), at held-out receivers, which there must be.
+  double held_out_error(const LightEstimates& lights) const;
 
   const std::shared_ptr<const SearchBasis> basis;
   const SolveProblem problem;

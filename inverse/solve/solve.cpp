@@ -335,7 +335,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
       by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : termination_of(optimum, by_trace.lights.size());
   result.error_curve = optimum.error_curve;
   if (options.method == SolveMethod::kJoint) {
-    put_in_curve(set_of(by_trace.lights, searched->error_in_curve(optimum, by_trace.lights)), result.error_curve);
+    const double error =
+        optimum.curve_by_held_out ? searched->held_out_error(by_trace.lights) : result.relative_l2_cached;
+    put_in_curve(set_of(by_trace.lights, error), result.error_curve);
     if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;

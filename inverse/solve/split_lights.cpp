@@ -41,16 +41,18 @@ constexpr std::array<std::array<double, 2>, 6> kParts{
 
 // Where each channel by itself would have the light go: two lights of different colours pull it apart.
 Eigen::Vector3d direction_of_colors(const LightResponse& response, const Eigen::VectorXd& sqrt_weight,
-                                    const Column& residual, const LightEstimate& light) {
+                                    const Column& weighted_residual, const LightEstimate& light) {
   const ColumnWithGradient here = response.evaluate_with_gradient(light.position, Evaluation::kTracedVisibility);
   Eigen::Matrix3d steps;
   for (int c = 0; c < 3; ++c) {
     Eigen::MatrixXd change(sqrt_weight.size(), 4);
-    for (int a = 0; a < 3; ++a) change.col(a) = light.intensity[c] * sqrt_weight.cwiseProduct(here.gradient[a].col(c));
-    change.col(3) = sqrt_weight.cwiseProduct(here.value.col(c));
+    for (int a = 0; a < 3; ++a) change.col(a) = light.intensity[c] * here.gradient[a].col(c);
+    change.col(3) = here.value.col(c);
+    const Eigen::Vector4d gradient = change.transpose() * weighted_residual.col(c);
+    change = sqrt_weight.asDiagonal() * change;
     Eigen::Matrix4d normal = change.transpose() * change;
     normal.diagonal() = normal.diagonal() * (1 + kDamping) + Eigen::Vector4d::Constant(1e-300);
-    const Eigen::Vector4d step = -normal.ldlt().solve(change.transpose() * sqrt_weight.cwiseProduct(residual.col(c)));
+    const Eigen::Vector4d step = -normal.ldlt().solve(gradient);
     steps.col(c) = step.allFinite() ? Eigen::Vector3d(step.head<3>()) : Eigen::Vector3d::Zero();
   }
   const Eigen::Matrix3d apart = steps.colwise() - steps.rowwise().mean().eval();
@@ -58,13 +60,13 @@ Eigen::Vector3d direction_of_colors(const LightResponse& response, const Eigen::
 }
 
 Split split_light(const LightResponse& response, const Observations& observations, const LightEstimates& lights,
-                  std::vector<Column> columns, const Column& residual, std::size_t split) {
+                  std::vector<Column> columns, const Column& weighted_residual, std::size_t split) {
   const double diagonal = double(response.grid().region.diagonal());
-  const Column weighted = observations.sqrt_weight.cwiseAbs2().asDiagonal() * residual;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-      curvature(response, weighted, lights[split], kDifference * diagonal));
+      curvature(response, weighted_residual, lights[split], kDifference * diagonal));
   const std::array<Eigen::Vector3d, 2> directions{
-      eigen.eigenvectors().col(0), direction_of_colors(response, observations.sqrt_weight, residual, lights[split])};
+      eigen.eigenvectors().col(0),
+      direction_of_colors(response, observations.sqrt_weight, weighted_residual, lights[split])};
   const auto part = [&](const Eigen::Vector3d& side) {
     LightEstimate light = lights[split];
     light.position = response.places().nearest(light.position + diagonal * side).value_or(light.position);
@@ -92,9 +94,10 @@ std::vector<Split> propose_splits(const LightResponse& response, const Observati
                                   const LightEstimates& lights, std::size_t most) {
   const std::vector<Column> columns = evaluate_columns(response, lights, Evaluation::kTracedVisibility);
   const Column residual = total_illumination(columns, lights, observations.wanted.rows()) - observations.wanted;
+  const Column weighted = observations.sqrt_weight.cwiseAbs2().asDiagonal() * residual;
   std::vector<Split> splits(lights.size());
   renderer::parallel_for(lights.size(), [&](std::size_t j) {
-    splits[j] = split_light(response, observations, lights, columns, residual, j);
+    splits[j] = split_light(response, observations, lights, columns, weighted, j);
   });
   return best_of(std::move(splits), most);
 }

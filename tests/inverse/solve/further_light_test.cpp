@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "inverse/solve/refine_joint.h"
-#include "renderer/core/sampler.h"
 #include "tests/inverse/solve/painted_corner.h"
 
 namespace chiaro::inverse {
@@ -17,11 +16,7 @@ class FurtherLight : public ::testing::Test {
   static constexpr int kReceivers = 1800;
 
   explicit FurtherLight(LightEstimates known = known_lights(3)) : known_(std::move(known)) {
-    const double amplitude = 0.05 * bench_.observations.wanted.mean();
-    for (Eigen::Index i = 0; i < kReceivers; ++i) {
-      renderer::Sampler sampler(5, 0, std::uint32_t(i));
-      for (int c = 0; c < 3; ++c) bench_.observations.wanted(i, c) += amplitude * (2 * double(sampler.next_1d()) - 1);
-    }
+    bench_.observations.wanted += noise_up_to(0.05 * bench_.observations.wanted.mean(), kReceivers);
   }
 
   // Descended from here, and one light more.

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/core/sampler.h"
 #include "tests/inverse/solve/painted_corner.h"
 
 namespace chiaro::inverse {
@@ -16,11 +15,7 @@ class NeedlessLights : public ::testing::Test {
   static constexpr int kReceivers = 1800;
 
   NeedlessLights() : bench_{problem_.response(), problem_.observations()} {
-    const double amplitude = 0.1 * bench_.observations.wanted.mean();
-    for (Eigen::Index i = 0; i < noise_.rows(); ++i) {
-      renderer::Sampler sampler(5, 0, std::uint32_t(i));
-      for (int c = 0; c < 3; ++c) noise_(i, c) = amplitude * (2 * double(sampler.next_1d()) - 1);
-    }
+    noise_ = noise_up_to(0.1 * bench_.observations.wanted.mean(), kReceivers);
     bench_.observations.wanted += noise_;
   }
 

@@ -8,6 +8,7 @@
 #include "inverse/solve/observations.h"
 #include "inverse/solve/solve.h"
 #include "inverse/transport/bake.h"
+#include "renderer/core/sampler.h"
 #include "tests/support/code_scenes.h"
 
 namespace chiaro::inverse::tests {
@@ -91,6 +92,16 @@ class DirectProblem {
   std::optional<ExactIndirect> exact_;
   Observations observations_;
 };
+
+// Of receivers, the same each time: up to this much, evenly.
+inline Column noise_up_to(double amplitude, int receivers) {
+  Column noise(receivers, 3);
+  for (Eigen::Index i = 0; i < receivers; ++i) {
+    renderer::Sampler sampler(5, 0, std::uint32_t(i));
+    for (int c = 0; c < 3; ++c) noise(i, c) = amplitude * (2 * double(sampler.next_1d()) - 1);
+  }
+  return noise;
+}
 
 // The largest distance, metres, from a known light to the nearest of the positions.
 inline double farthest_from(const LightEstimates& known, const std::vector<Vector3d>& positions) {
