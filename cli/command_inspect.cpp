@@ -19,6 +19,7 @@ struct InspectCommand {
   CommonOptions common;
   std::string file;
   renderer::LoadOptions load;  // of a scene
+  const CLI::App* command = nullptr;
 };
 
 bool mentions(const std::string& bytes, const char* text) { return bytes.find(text) != std::string::npos; }
@@ -40,19 +41,28 @@ bool is_vertex_mesh(const std::string& bytes) {
   return mentions_any(bytes, {"\"generator\":\"chiaro\"", "\"COLOR_0\""}) && !is_dressed(bytes);
 }
 
-Inspection inspect(const std::string& file, const renderer::LoadOptions& load, const renderer::Control& control) {
-  if (has_extension(file, {".glb", ".gltf"})) {
-    return is_vertex_mesh(renderer::read_file(file)) ? inspect_vertex_mesh(file) : inspect_scene(file, load, control);
-  }
+Inspection inspect_other_than_scene(const std::string& file) {
+  if (has_extension(file, {".glb", ".gltf"})) return inspect_vertex_mesh(file);
   if (has_extension(file, {".json"})) {
     return mentions(renderer::read_file(file), "\"strokes\"") ? inspect_strokes(file) : inspect_light_file(file);
   }
   return inspect_picture(file);
 }
 
+Inspection inspect(const InspectCommand& options, const renderer::Control& control) {
+  const std::string& file = options.file;
+  if (has_extension(file, {".glb", ".gltf"}) && !is_vertex_mesh(renderer::read_file(file))) {
+    return inspect_scene(file, options.load, control);
+  }
+  Inspection inspection = inspect_other_than_scene(file);
+  const auto idle = given_for_nothing(*options.command, scene_option_names(), "with a file that is not a scene");
+  inspection.warnings.insert(inspection.warnings.end(), idle.begin(), idle.end());
+  return inspection;
+}
+
 int run_inspect(const InspectCommand& options) {
   Session session(options.common);
-  Inspection inspection = inspect(options.file, options.load, session.control());
+  Inspection inspection = inspect(options, session.control());
   session.stop_if_interrupted();
   session.warn(inspection.warnings);
   inspection.summary.emplace_back("warnings", json_list(inspection.warnings));
@@ -64,6 +74,7 @@ int run_inspect(const InspectCommand& options) {
 
 CommandRun add_inspect(CLI::App& command) {
   const auto options = std::make_shared<InspectCommand>();
+  options->command = &command;
   add_input(command, {"file", "FILE", "Scene, light file, strokes, receivers, target, cache or image"}, options->file);
   add_scene_options(command, options->load);
   add_common_options(command, options->common);

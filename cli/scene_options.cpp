@@ -23,4 +23,8 @@ void add_scene_options(CLI::App& command, renderer::LoadOptions& options) {
       "Let the scene open files outside its folder");
 }
 
+std::vector<std::string> scene_option_names() {
+  return {"--variant", "--animation", "--animation-time", "--allow-external"};
+}
+
 }  // namespace chiaro::cli

@@ -472,6 +472,13 @@ TEST(CliInspect, WhatATargetLosesInReadingIsTold) {
   }
 }
 
+TEST(CliInspect, OptionsOfScenesThatDoNothingAreTold) {
+  const Outcome outcome = run_with({"inspect", kScenes + "lights/fiveballs-3.json", "--variant", "red", "--json"});
+  ASSERT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+  EXPECT_EQ(json::parse(outcome.standard_output)["warnings"],
+            json::array({"--variant: does nothing with a file that is not a scene"}));
+}
+
 TEST(CliInspect, ColouredSurfacesWithMaterialsAreAScene) {
   const TemporaryFolder folder;
   const std::filesystem::path file = write_foreign_mesh(folder, {kColoured});
