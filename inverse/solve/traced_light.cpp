@@ -18,6 +18,8 @@ constexpr int kMoreOfSamples = 4;      // at least, as the noise of few is known
 constexpr std::uint64_t kParts = 100;  // purpose of the first one's seed
 // As the error is known without this noise, it may be …
 constexpr double kNoiseBesideTarget = 1;   // … of the target's …
+constexpr double kNoiseOfFew = 2;          // … or twice, where each light brings much of it: …
+constexpr std::size_t kFew = 7;            // … so many at most …
 constexpr double kNoiseBesideError = 0.3;  // … or of what the lights leave unexplained
 
 bool has_fixed_light(const SolveProblem& problem) {
@@ -58,7 +60,8 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
 double noise_that_does_not_matter(const FreshTrace& traced, const Target& target) {
   const double of_target = target_noise(target);
   const double unexplained = std::max(0.0, squared_error_of(traced, target).beyond_noise() - of_target * of_target);
-  return std::max(kNoiseBesideTarget * of_target, kNoiseBesideError * std::sqrt(unexplained));
+  const double beside_target = traced.of_light.size() <= kFew ? kNoiseOfFew : kNoiseBesideTarget;
+  return std::max(beside_target * of_target, kNoiseBesideError * std::sqrt(unexplained));
 }
 
 // What a trace is of, and by what means.

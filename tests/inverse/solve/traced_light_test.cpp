@@ -44,7 +44,20 @@ TEST_F(TraceForVerification, TakesFewWhereNoiseHardlyMatters) {
   for (const FreshTrace& traced : {trace(noisy, known_), trace(exact, wrong)}) {
     EXPECT_LE(traced.samples, most() / 16);
   }
-  EXPECT_LE(*relative_standard_error(trace(noisy, known_).all), target_noise(noisy));
+  EXPECT_LE(*relative_standard_error(trace(noisy, known_).all), 2 * target_noise(noisy));
+}
+
+// The same light by two lights and by eight: of few the trace may be twice as noisy as the target.
+TEST_F(TraceForVerification, TakesMoreWhereManyLightsAreToBeToldApart) {
+  Target target = corner_.target(known_, -1);
+  for (float& error : target.standard_error) error *= 2;
+  LightEstimates many(7, known_[0]);
+  for (LightEstimate& light : many) light.intensity /= 7;
+  many.push_back(known_[1]);
+  const FreshTrace of_few = trace(target, known_), of_many = trace(target, many);
+  EXPECT_LT(of_few.samples, of_many.samples);
+  EXPECT_LE(*noise_of(of_few, target), 2 * target_noise(target));
+  EXPECT_LE(*noise_of(of_many, target), target_noise(target));
 }
 
 // By 64 paths and by a thousand: the error of lights that do not explain the target is the same but for what is known
