@@ -55,6 +55,7 @@ CLI::Option* add_repeated(CLI::App& command, const OptionText& text, std::functi
   return command.add_option_function<std::vector<std::string>>(text.names, each, text.help)
       ->type_name(text.value)
       ->expected(1)
+      ->allow_extra_args(false)  // or it takes what follows, and lists in brackets
       ->take_all();
 }
 

@@ -26,5 +26,17 @@ TEST(CliAddOptions, OptionsThatDoNothingAreTold) {
   EXPECT_EQ(told("-b 1 --lightmap"), std::vector<std::string>{});
 }
 
+// They neither take the words after their value nor take one apart.
+TEST(CliAddOptions, RepeatedOptionsTakeOneValueEach) {
+  CLI::App command;
+  std::string scene;
+  std::vector<std::string> regions;
+  command.add_option("scene", scene)->required();
+  add_repeated(command, {"--region", "R", ""}, [&](const std::string& text) { regions.push_back(text); });
+  command.parse("--region floor --region \"[a,b]\" room.glb");
+  EXPECT_EQ(scene, "room.glb");
+  EXPECT_EQ(regions, (std::vector<std::string>{"floor", "[a,b]"}));
+}
+
 }  // namespace
 }  // namespace chiaro::cli
