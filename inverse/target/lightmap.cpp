@@ -10,6 +10,7 @@
 
 #include "inverse/target/texel_coverage.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -97,7 +98,7 @@ bool is_used(const Lightmap& map, std::size_t texel, const TexelCover& cover, Te
     why = &counts.overlapping;
   } else if (!(map.weight[texel] > 0)) {
     why = &counts.masked;
-  } else if (!is_finite(value) || min_component(value) < 0) {
+  } else if (!is_finite(value) || min_component(value) < 0 || max_component(value) > renderer::kBrightest) {
     why = &counts.invalid;
   }
   ++*(why ? why : &counts.used);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 #include "renderer/trace/bsdf.h"
 #include "renderer/trace/camera_rays.h"
 #include "renderer/trace/surface_point.h"
@@ -112,11 +113,11 @@ class FrameReader {
   }
 
   Pixel value_of(Vec3f color, Vec3f albedo, const SurfacePoint& at, float weight) const {
-    Pixel pixel{PixelKind::kUsed, {at.position, at.geometric_normal, color, weight}};
-    if (frame_.content == PictureContent::kIllumination) return pixel;
-    if (min_component(albedo) < kDarkest) return {PixelKind::kDark, {}};
-    pixel.value.illumination = color / albedo;
-    return pixel;
+    const bool is_beauty = frame_.content == PictureContent::kBeauty;
+    if (is_beauty && min_component(albedo) < kDarkest) return {PixelKind::kDark, {}};
+    const Vec3f illumination = is_beauty ? color / albedo : color;
+    if (!(max_component(illumination) <= renderer::kBrightest)) return {PixelKind::kInvalid, {}};
+    return {PixelKind::kUsed, {at.position, at.geometric_normal, illumination, weight}};
   }
 
   const RayTracer& tracer_;

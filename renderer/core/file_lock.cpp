@@ -26,8 +26,11 @@ FileLock::FileLock(const std::filesystem::path& path)
     : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   if (file_ < 0) throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
   // It may have been renamed between being opened and being locked.
-  if (::flock(file_, LOCK_EX | LOCK_NB) == 0 && names_open_file(path, file_)) return;
+  const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0;
+  if (locked && names_open_file(path, file_)) return;
+  const int why = locked ? EWOULDBLOCK : errno;
   ::close(file_);
+  if (why != EWOULDBLOCK) throw Error({path.string(), "", fmt::format("cannot be locked: {}", std::strerror(why)), ""});
   throw Error({path.string(), "", "another process is writing it", "its end, or another output"});
 }
 

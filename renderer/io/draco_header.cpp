@@ -69,24 +69,26 @@ void skip_geometry_metadata(Reader& reader) {
 
 }  // namespace
 
-std::optional<std::uint64_t> draco_face_count(std::string_view bytes) {
+std::optional<DracoSizes> draco_sizes(std::string_view bytes) {
   if (bytes.substr(0, 5) != "DRACO") return std::nullopt;
   Reader reader(bytes.substr(5));
   const std::uint64_t major = reader.fixed(1), version = major << 8 | reader.fixed(1);
   const std::uint64_t geometry = reader.fixed(1), method = reader.fixed(1), flags = reader.fixed(2);
   if (geometry != kMesh || method > kEdgebreaker) return std::nullopt;
   if (version >= 0x103 && (flags & kMetadataFlag) != 0) skip_geometry_metadata(reader);
-  std::uint64_t faces = 0;
+  DracoSizes sizes;
   if (method == kSequential) {
-    faces = version < 0x202 ? reader.fixed(4) : reader.varint();
+    const auto number = [&] { return version < 0x202 ? reader.fixed(4) : reader.varint(); };
+    sizes.faces = number();
+    sizes.points = number();
   } else {
     const auto number = [&] { return version < 0x200 ? reader.fixed(4) : reader.varint(); };
     reader.skip(1);                 // the kind of traversal
     if (version < 0x202) number();  // new vertices
     number();                       // encoded vertices
-    faces = number();
+    sizes.faces = number();
   }
-  return reader.good() ? std::optional(faces) : std::nullopt;
+  return reader.good() ? std::optional(sizes) : std::nullopt;
 }
 
 }  // namespace chiaro::renderer

@@ -7,8 +7,13 @@
 
 namespace chiaro::renderer {
 
-// The number of triangles that a compressed mesh says it has; absent where it is not a mesh or is cut off before that.
+struct DracoSizes {
+  std::uint64_t faces = 0;
+  std::uint64_t points = 0;  // that stand by themselves; 0 where they follow from the faces
+};
+
+// What a compressed mesh says it has; absent where it is not a mesh or is cut off before that.
 // Source: Google, Draco Bitstream Specification, version 2.2, 2018, sections "Draco Decoder" and "Connectivity".
-std::optional<std::uint64_t> draco_face_count(std::string_view bytes);
+std::optional<DracoSizes> draco_sizes(std::string_view bytes);
 
 }  // namespace chiaro::renderer

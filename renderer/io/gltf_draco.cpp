@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kExtension = "KHR_draco_mesh_compression";
 
 // Regular grids compress to almost nothing; beyond these a small file could ask for any amount of memory.
-constexpr std::uint64_t kFacesOfAnyFile = 1U << 20, kFacesPerByte = 64;
+constexpr std::uint64_t kFacesOfAnyFile = 1U << 20, kFacesPerByte = 64;  // and as many points
 
 struct CompressedPrimitive {
   int mesh = 0, primitive = 0;
@@ -42,11 +42,15 @@ std::vector<CompressedPrimitive> compressed_primitives(const tinygltf::Model& mo
 }
 
 void check_size(const GltfDocument& document, std::string_view bytes, const std::string& place) {
-  const std::optional<std::uint64_t> faces = draco_face_count(bytes);
-  if (!faces) fail(document, place, "is damaged", "a mesh in Draco's format");
+  const std::optional<DracoSizes> sizes = draco_sizes(bytes);
+  if (!sizes) fail(document, place, "is damaged", "a mesh in Draco's format");
   const std::uint64_t most = kFacesOfAnyFile + kFacesPerByte * bytes.size();
-  if (*faces > most)
-    fail(document, place, fmt::format("says it has {} triangles", *faces), fmt::format("at most {}", most));
+  const auto require = [&](std::uint64_t count, const char* what) {
+    if (count <= most) return;
+    fail(document, place, fmt::format("says it has {} {}", count, what), fmt::format("at most {}", most));
+  };
+  require(sizes->faces, "triangles");
+  require(sizes->points, "points");
 }
 
 std::unique_ptr<draco::Mesh> decode_mesh(const GltfDocument& document, std::string_view bytes,

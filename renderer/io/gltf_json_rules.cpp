@@ -107,6 +107,7 @@ constexpr JsonRule kRules[] = {
     {"images.[]", kObject},
     {"images.[].name", kString},
     {"images.[].uri", kString},
+    {"images.[].mimeType", kString},
     index("images.[].bufferView", "bufferViews"),
     {"samplers", kArray},
     {"samplers.[]", kObject},

@@ -125,12 +125,13 @@ TEST(Lightmap, LeavesOutMaskedInvalidAndEmptyTexels) {
   map.weight[1] = 0.25F;
   map.texels[2] = {-1, 0, 0};
   map.texels[3] = {0, std::numeric_limits<float>::quiet_NaN(), 0};
+  map.texels[8] = {0, 0, 1e30F};
   map.texels[31] = map.texels[3];
   const LightmapValues read = values_of_lightmap(scene, map);
   EXPECT_EQ(read.counts.empty, 24U);
   EXPECT_EQ(read.counts.masked, 1U);
-  EXPECT_EQ(read.counts.invalid, 2U);
-  EXPECT_EQ(read.counts.used, 5U);
+  EXPECT_EQ(read.counts.invalid, 3U);
+  EXPECT_EQ(read.counts.used, 4U);
   EXPECT_NEAR(read.values[0].weight, 0.25F, 1e-5F) << "a quarter of a square metre";
   EXPECT_NEAR(read.values[1].weight, 1, 1e-5F);
 }

@@ -113,8 +113,9 @@ TEST(PaintedFrame, LeavesOutBackgroundEdgesAndWhatIsNotFinite) {
   const std::size_t middle = std::size_t(kHeight / 2) * kWidth + kWidth / 2;
   frame.pixels[middle].y = std::numeric_limits<float>::quiet_NaN();
   frame.pixels[middle + 1].z = -1;
+  frame.pixels[middle + 2].x = std::numeric_limits<float>::max();  // finite only until the albedo divides it
   const PixelCounts counts = values_of_frame(RayTracer(scene), frame).counts;
-  EXPECT_EQ(counts.invalid, 2U);
+  EXPECT_EQ(counts.invalid, 3U);
   EXPECT_GT(counts.background, 0U);
   EXPECT_GT(counts.edge, 0U);
   EXPECT_LT(counts.edge, 400U);  // about one pixel along two squares

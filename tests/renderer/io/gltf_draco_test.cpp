@@ -123,7 +123,11 @@ TEST_P(Draco, MeshesComeBackWithinTheirQuantisation) {
 }
 
 TEST_P(Draco, TheHeaderTellsTheNumberOfTriangles) {
-  EXPECT_EQ(draco_face_count(encoded_grid(GetParam())), grid_triangles().size());
+  const auto sizes = draco_sizes(encoded_grid(GetParam()));
+  ASSERT_TRUE(sizes);
+  EXPECT_EQ(sizes->faces, grid_triangles().size());
+  const bool sequential = GetParam().method == draco::MESH_SEQUENTIAL_ENCODING;
+  EXPECT_EQ(sizes->points, sequential ? std::size_t(kSide * kSide) : 0);
 }
 
 TEST_P(Draco, DamagedDataAreRefusedOrReadButNeverCrash) {
@@ -168,8 +172,15 @@ TEST(DracoPrimitives, MoreTrianglesThanAnyMemoryHoldsAreRefusedBeforeTheyAreMade
   // DRACO, 2.2, mesh, sequential, no flags, 2^31 faces, 3 points.
   std::string bomb("DRACO\x02\x02\x01\x00\x00\x00", 11);
   bomb += std::string("\x80\x80\x80\x80\x08\x03", 6);
-  EXPECT_EQ(draco_face_count(bomb), std::uint64_t{1} << 31);
+  EXPECT_EQ(draco_sizes(bomb)->faces, std::uint64_t{1} << 31);
   EXPECT_NE(error_of([&] { load(draco_scene(bomb)); }).find("says it has 2147483648 triangles"), std::string::npos);
+}
+
+TEST(DracoPrimitives, MorePointsThanAnyMemoryHoldsAreRefusedBeforeTheyAreMade) {
+  // DRACO, 2.2, mesh, sequential, no flags, one face, 2^31 points.
+  std::string bomb("DRACO\x02\x02\x01\x00\x00\x00", 11);
+  bomb += std::string("\x01\x80\x80\x80\x80\x08", 6);
+  EXPECT_NE(error_of([&] { load(draco_scene(bomb)); }).find("says it has 2147483648 points"), std::string::npos);
 }
 
 }  // namespace
