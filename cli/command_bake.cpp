@@ -115,8 +115,10 @@ CommandRun add_bake(CLI::App& command) {
              [options](const std::string& text) { options->file.shard = parse_shard(text); });
   add_flag(command, "--resume", options->file.resume,
            "Go on with a bake that was interrupted or killed, if there is one");
-  add_parsed(command, {"--memory", "SIZE", "Take up so much memory at most: 800M, 4G (default: 3/4 of this machine's)"},
-             [options](const std::string& text) { options->memory = parse_bytes(text); });
+  add_parsed(
+      command,
+      {"--memory", "SIZE", "Take up so much memory at most: 800M, 4G (default: 3/4 of this machine's or container's)"},
+      [options](const std::string& text) { options->memory = parse_bytes(text); });
   add_common_options(command, options->common);
   set_examples(command,
                "  chiaro bake room.glb -o room.exr --on painted.glb --grid 12,8,12\n"

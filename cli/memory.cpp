@@ -1,6 +1,9 @@
 #include "cli/memory.h"
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
+#include <string>
 
 #include <unistd.h>
 
@@ -14,9 +17,35 @@ double resident_bytes() {
   return resident * double(::sysconf(_SC_PAGESIZE));
 }
 
+// Infinity where there is none, or "max".
+double limit_in(const std::filesystem::path& file) {
+  double limit = 0;
+  return std::ifstream(file) >> limit ? limit : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
-double memory_bytes() { return double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)); }
+double control_group_limit(const std::filesystem::path& list, const std::filesystem::path& groups) {
+  double least = std::numeric_limits<double>::infinity();
+  std::ifstream lines(list);
+  for (std::string line; std::getline(lines, line);) {  // number:controllers:/group, of version 2 without controllers
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == line.npos || second == line.npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    if (!controllers.empty() && controllers != "memory") continue;
+    const auto mounted = groups / controllers;
+    const char* file = controllers.empty() ? "memory.max" : "memory.limit_in_bytes";
+    std::filesystem::path group = std::filesystem::path(line.substr(second + 1)).relative_path();
+    for (; !group.empty(); group = group.parent_path()) least = std::min(least, limit_in(mounted / group / file));
+    least = std::min(least, limit_in(mounted / file));
+  }
+  return least;
+}
+
+double memory_bytes() {
+  const double installed = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+  return std::min(installed, control_group_limit("/proc/self/cgroup", "/sys/fs/cgroup"));
+}
 
 double memory_left(std::optional<double> limit) {
   constexpr double kBesides = 100e6;  // threads, file buffers, and what the allocator does not give back

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 namespace chiaro::cli {
 
-double memory_bytes();  // of this machine
+double memory_bytes();  // of this machine, or what its control groups allow: those of containers and job schedulers
 
-// What may still be taken up of `limit` bytes; absent: of three quarters of this machine's.
+// What control groups allow, of which `/proc/self/cgroup` lists this process's and `/sys/fs/cgroup` holds all; infinity
+// where they do not limit it. Source: Linux, Documentation/admin-guide/cgroup-v2.rst and cgroup-v1/memory.rst.
+double control_group_limit(const std::filesystem::path& list, const std::filesystem::path& groups);
+
+// What may still be taken up of `limit` bytes; absent: of three quarters of memory_bytes().
 double memory_left(std::optional<double> limit);
 
 }  // namespace chiaro::cli
