@@ -56,6 +56,12 @@ void warn_of_idle_options(const SolveCommand& options, Session& session) {
   if (!options.cache.empty() && was_given(*options.command, "--samples")) {
     session.warn("--samples: does nothing with --cache, which was baked with its own");
   }
+  if (options.choices.constraints.keep_positions) {
+    session.warn(given_for_nothing(
+        *options.command,
+        {"--grid", "--important-vertices", "--importance-weights", "--error-threshold", "--weak-light", "--samples"},
+        "with --keep-positions"));
+  }
 }
 
 void refuse_what_excludes_each_other(const SolveCommand& options) {

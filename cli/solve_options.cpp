@@ -62,8 +62,8 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
   add_count(command,
             {"--verification-samples", "N",
              "Paths per receiver of the final check, by which the lights settle (default: until their noise is that "
-             "of the target, of up to seven lights twice that, or little beside what the lights leave; at most 16 to "
-             "1024, by the number of receivers)"},
+             "of the target, of up to seven lights twice that if no more than 3 %, or little beside what the lights "
+             "leave; at most 16 to 1024, by the number of receivers)"},
             solve.verification_samples, {1, 1 << 24});
 }
 

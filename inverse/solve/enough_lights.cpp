@@ -10,7 +10,9 @@ namespace {
 // Of sets of fewer lights than these the one that is best, if it is better.
 LightEstimates better_of_fewer(const RegionSearch& searched, const Optimum& optimum) {
   const LightSet* best = nullptr;
-  double least = relative_error(searched.reported, illumination_of(searched.response, optimum.lights));
+  double least = optimum.curve_by_held_out
+                     ? searched.held_out_error(optimum.lights)
+                     : relative_error(searched.reported, illumination_of(searched.response, optimum.lights));
   for (const LightSet& set : optimum.error_curve) {
     if (set.lights.size() >= optimum.lights.size() || !(set.relative_l2 < least)) continue;
     best = &set;

@@ -268,7 +268,9 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   const Observations& last = beside_surfaces.empty() ? search.judged : remaining;
   PolishedLights polished = polish_chosen(search, last, count, clock);
   if (polished.started_with < count.lights.size()) choose_fewer(search, remaining, polished.lights, count);
-  found.error_curve = error_curve_of(response, search.reported, beside_surfaces, count);
+  Observations by_rules = search.reported;
+  by_rules.rules = search.judged.rules;
+  found.error_curve = error_curve_of(response, by_rules, beside_surfaces, count);
   clock.finish("polish",
                {{"lights", double(count.lights.size())}, {"rounds", polished.rounds}, {"relative_l2", polished.error}});
   found.beside_surfaces = std::move(beside_surfaces);

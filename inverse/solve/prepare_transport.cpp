@@ -7,11 +7,11 @@
 #include "renderer/core/error.h"
 
 namespace chiaro::inverse {
-namespace {
 
 using renderer::Error;
 
-void check_cache(const SolveProblem& problem) {
+void require_fitting_cache(const SolveProblem& problem) {
+  if (!problem.cache_file) return;
   const std::string file = problem.cache_file->string();
   const TransportCache header = load_transport_cache_header(*problem.cache_file);
   if (header.settings.materials != problem.bake.materials) {
@@ -32,14 +32,10 @@ void check_cache(const SolveProblem& problem) {
   }
 }
 
-}  // namespace
-
 PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
                                     const renderer::Control& control) {
-  if (problem.cache_file) {
-    check_cache(problem);
-    return {load_transport_cache(*problem.cache_file, chosen)};
-  }
+  require_fitting_cache(problem);
+  if (problem.cache_file) return {load_transport_cache(*problem.cache_file, chosen)};
   const LightGrid grid =
       choose_light_grid(problem.tracer, problem.target.receivers, problem.grid, problem.bake, control);
   return {bake(problem.tracer, select_receivers(problem.target.receivers, chosen), grid, problem.bake, control).cache};

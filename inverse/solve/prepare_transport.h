@@ -8,6 +8,9 @@ struct PreparedTransport {
   TransportCache cache;  // of the chosen receivers only, in their order
 };
 
+// Error for a cache file that belongs to other receivers, another scene or other materials.
+void require_fitting_cache(const SolveProblem& problem);
+
 // From the problem's cache file, or baked for the chosen receivers alone. Error for a cache that belongs to other
 // receivers, another scene or other materials.
 PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,

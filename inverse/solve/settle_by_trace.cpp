@@ -385,7 +385,8 @@ LightsByTrace settle_by_trace(const SolveProblem& problem, const SolveOptions& o
   }
   Settler settler(problem, apart, control, search, lights, found.held, further_lights(search, found), clock);
   LightsByTrace settled = settler.settle(lights);
-  if (lights.size() == all.size()) return settled;
+  const bool some_dark = std::any_of(settled.lights.begin(), settled.lights.end(), is_dark);
+  if (lights.size() == all.size() && !(some_dark && options.exact_lights > 0)) return settled;
   settled.lights = as_many_as_asked_for(std::move(settled.lights), all.size());
   settled.intervals.reset();
   return settled;

@@ -18,6 +18,7 @@
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/not_reached.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/prepare_transport.h"
 #include "inverse/solve/region_search.h"
 #include "inverse/solve/report.h"
 #include "inverse/solve/settle_by_trace.h"
@@ -82,8 +83,9 @@ std::vector<std::size_t> all_indices(std::size_t count) {
 
 // Brightest contribution first. One that the last descent left dark, or as good as, is none, unless so many were asked
 // for.
-void report_lights(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
-                   const LightsByTrace& by_trace, SolveResult& result) {
+// Those that are reported, in the order of the trace.
+LightEstimates report_lights(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
+                             const LightsByTrace& by_trace, SolveResult& result) {
   const LightResponse& response = searched.response;
   const Observations& observations = searched.reported;
   const LightEstimates& lights = by_trace.lights;
@@ -100,6 +102,7 @@ void report_lights(const SolveProblem& problem, const SolveOptions& options, con
   if (options.exact_lights == 0) {
     std::erase_if(order, [&](std::size_t j) { return is_dark(lights[j]) || norm[j] < kAsGoodAsDark * total; });
   }
+  LightEstimates reported = numerics::chosen_from(lights, order);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return norm[a] > norm[b]; });
   const std::vector<std::string> names = free_light_names(problem, order.size());
   std::vector<int> number(lights.size());
@@ -113,6 +116,7 @@ void report_lights(const SolveProblem& problem, const SolveOptions& options, con
   for (const auto& [j, k] : intervals.confounded) {
     if (number[j] > 0 && number[k] > 0) result.not_told_apart.push_back(std::minmax(number[j], number[k]));
   }
+  return reported;
 }
 
 void check_earlier(const SolveProblem& problem, const SolveOptions& options) {
@@ -221,13 +225,14 @@ std::optional<Box3f> surroundings(const SolveProblem& problem) {
 // Where lights of an earlier solve stand it reaches, too. Absent: as the problem says.
 std::optional<Box3f> first_region(const SolveProblem& problem, const SolveOptions& options) {
   if (!region_may_grow(problem)) return std::nullopt;
-  if (options.earlier.empty()) return surroundings(problem);
-  const Box3f whole = default_region(problem.tracer);
-  Box3f region = whole;
+  const std::optional<Box3f> around = surroundings(problem);
+  if (options.earlier.empty()) return around;
+  const Box3f before = around.value_or(default_region(problem.tracer));
+  Box3f region = before;
   for (const LightSet& set : options.earlier) {
     for (const renderer::PointLight& light : set.lights) region.extend(light.position);
   }
-  return region == whole ? std::nullopt : std::optional(region);
+  return region == before ? around : region;
 }
 
 SearchBasis make_basis(const SolveProblem& problem, const SolveOptions& options, const renderer::Control& control,
@@ -252,6 +257,12 @@ std::unique_ptr<RegionSearch> search_region(const std::shared_ptr<const SearchBa
   }
 }
 
+void add_seconds_of(const RegionSearch& search, SolveResult& result) {
+  result.initial_seconds += search.initial_seconds;
+  result.optimal_seconds += search.optimal_seconds;
+  result.cache_seconds += search.cache_seconds;
+}
+
 // In ever larger regions, as long as that brings the lights clearly closer. before: with other important vertices.
 std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& basis, const SolveProblem& problem,
                                      std::optional<Box3f> region, const RegionSearch* before, StageClock& clock,
@@ -260,9 +271,7 @@ std::unique_ptr<RegionSearch> search(const std::shared_ptr<const SearchBasis>& b
   for (int regions = 0; regions < kMostRegions && (!best || (region && !clock.out_of_time())); ++regions) {
     auto search = search_region(basis, problem, region, best.get(), best ? best.get() : before, clock);
     if (!search) break;
-    result.initial_seconds += search->initial_seconds;
-    result.optimal_seconds += search->optimal_seconds;
-    result.cache_seconds += search->cache_seconds;
+    add_seconds_of(*search, result);
     if (best && !search->is_clearly_better_than(*best)) return best;
     best = std::move(search);
     region = best->wider_region();
@@ -291,6 +300,7 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
   auto found = search(basis, problem, first, nullptr, clock, result);
   if (first && options.earlier.empty() && !found->comes_close() && !clock.out_of_time()) {
     auto everywhere = search_region(basis, problem, std::nullopt, found.get(), found.get(), clock);
+    if (everywhere) add_seconds_of(*everywhere, result);
     if (everywhere && everywhere->is_clearly_better_than(*found)) found = std::move(everywhere);
   }
   if (!(found->was_misled() || found->has_many()) || clock.out_of_time()) return found;
@@ -311,7 +321,10 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   SolveResult result;
   check_target(problem);
   check_earlier(problem, options);
-  if (!problem.lights_in_place.empty()) return fit_in_place(problem, options, control);
+  if (!problem.lights_in_place.empty()) {
+    require_fitting_cache(problem);
+    return fit_in_place(problem, options, control);
+  }
 
   const std::unique_ptr<RegionSearch> searched = search(problem, options, control, clock, result);
   if (options.exact_lights == 0 && !searched->brings_closer()) none_brings_closer(problem);
@@ -328,16 +341,15 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
   check_brightness(problem, brightest_of(by_trace.lights));
   result.optimal_seconds += by_trace.settling_seconds;
-  report_lights(problem, options, *searched, by_trace, result);
+  const LightEstimates lights = report_lights(problem, options, *searched, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
-  result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, by_trace.lights));
+  result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, lights));
   result.termination =
-      by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : termination_of(optimum, by_trace.lights.size());
+      by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : termination_of(optimum, lights.size());
   result.error_curve = optimum.error_curve;
   if (options.method == SolveMethod::kJoint) {
-    const double error =
-        optimum.curve_by_held_out ? searched->held_out_error(by_trace.lights) : result.relative_l2_cached;
-    put_in_curve(set_of(by_trace.lights, error), result.error_curve);
+    const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : result.relative_l2_cached;
+    put_in_curve(set_of(lights, error), result.error_curve);
     if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;

@@ -50,7 +50,7 @@ SquaredError squared_error_of(const FreshTrace& traced, const Target& target);
 double error_without_noise(const FreshTrace& traced, const Target& target);
 
 // With as many samples as were asked for; or else with as many as it takes until its noise is no more than that of the
-// target (of few lights twice as much), or little beside what the lights leave unexplained, and no more than
+// target (of few lights twice as much, up to 3 %), or little beside what the lights leave unexplained, and no more than
 // verification_samples(), nor than clock has time for.
 FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::Lights& lights,
                                   const SolveOptions& options, const renderer::Control& control,

@@ -50,7 +50,8 @@ TEST_F(TraceForVerification, TakesFewWhereNoiseHardlyMatters) {
 // The same light by two lights and by eight: of few the trace may be twice as noisy as the target.
 TEST_F(TraceForVerification, TakesMoreWhereManyLightsAreToBeToldApart) {
   Target target = corner_.target(known_, -1);
-  for (float& error : target.standard_error) error *= 2;
+  const float scale = float(0.015 / target_noise(target));
+  for (float& error : target.standard_error) error *= scale;
   LightEstimates many(7, known_[0]);
   for (LightEstimate& light : many) light.intensity /= 7;
   many.push_back(known_[1]);
