@@ -381,6 +381,11 @@ TEST(Solve, FindsLightsInARoomOfALargeLand) {
     const SolveResult result = solve(problem, quick());
     EXPECT_EQ(result.lights.size(), 2U) << receivers.size();
     EXPECT_LT(farthest_from(known, positions_of(result)), 0.01) << receivers.size();
+    SolveOptions on = quick();
+    on.earlier = result.error_curve;
+    const SolveResult again = solve(problem, on);
+    EXPECT_EQ(again.region, result.region) << receivers.size();
+    EXPECT_LT(farthest_from(known, positions_of(again)), 0.01) << receivers.size();
   }
 }
 
