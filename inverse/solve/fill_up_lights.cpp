@@ -39,9 +39,8 @@ class FillingUp {
   }
 
  private:
-  bool fits_in(std::vector<Vector3d> positions, const Vector3d& further) const {
-    positions.push_back(further);
-    return response_.places().far_apart(positions);
+  bool fits_in(const std::vector<Vector3d>& positions, const Vector3d& further) const {
+    return response_.places().has_room(further, positions);
   }
 
   // At the candidate that explains most of what is left, all others staying where they are.
@@ -77,6 +76,7 @@ class FillingUp {
     });
     farthest.resize(std::min(kFarthest, farthest.size()));
     for (const Vector3d& candidate : farthest) {
+      limits_.control.stop_if_requested();
       std::vector<Vector3d> all = positions;
       all.push_back(candidate);
       if (!response_.places().settle(all)) continue;
@@ -100,6 +100,7 @@ class FillingUp {
       std::optional<Vector3d> next = candidates_[k * candidates_.size() / starts];
       if (!fits_in({}, *next)) next = nearest_that_fits(positions, *next);
       while (next) {
+        limits_.control.stop_if_requested();
         positions.push_back(*next);
         if (positions.size() == wanted) return lights_at(positions);
         next = nearest_that_fits(positions, positions.front());

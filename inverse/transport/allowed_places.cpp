@@ -199,12 +199,16 @@ std::optional<Vector3d> AllowedPlaces::nearest(const Vector3d& position) const {
   return best;
 }
 
+bool AllowedPlaces::has_room(const Vector3d& further, std::span<const Vector3d> positions) const {
+  if (!(rules_.light_distance > 0)) return true;
+  const Vector3d here = rounded_to_float(further);
+  const auto near = [&](const Vector3d& p) { return (rounded_to_float(p) - here).norm() < rules_.light_distance; };
+  return std::none_of(stay_.begin(), stay_.end(), near) && std::none_of(positions.begin(), positions.end(), near);
+}
+
 bool AllowedPlaces::far_apart(const std::vector<Vector3d>& positions) const {
-  for (std::size_t j = 0; rules_.light_distance > 0 && j < positions.size(); ++j) {
-    const Vector3d here = rounded_to_float(positions[j]);
-    const auto near = [&](const Vector3d& p) { return (rounded_to_float(p) - here).norm() < rules_.light_distance; };
-    if (std::any_of(stay_.begin(), stay_.end(), near)) return false;
-    if (std::any_of(positions.begin(), positions.begin() + std::ptrdiff_t(j), near)) return false;
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    if (!has_room(positions[j], std::span(positions).first(j))) return false;
   }
   return true;
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ class AllowedPlaces {
   std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& position) const;
   // As it is given out, in floats.
   bool contains(const Eigen::Vector3d& position) const;
+  // Beside lights that stand there, and those that stay.
+  bool has_room(const Eigen::Vector3d& further, std::span<const Eigen::Vector3d> positions) const;
   // No two lights too close to each other, nor to those that stay.
   bool far_apart(const std::vector<Eigen::Vector3d>& positions) const;
   // Moves all of them to allowed places, far apart. Says whether it could; if not they are left anywhere.
