@@ -56,11 +56,15 @@ std::optional<float> unpainted_weight(const PaintCommand& options, const inverse
 }
 
 void warn_of_misses(const PaintCommand& options, const inverse::PaintResult& result, Session& session) {
-  for (std::size_t i = 0; i < result.far_points.size(); ++i) {
-    for (const std::size_t point : result.far_points[i]) {
-      session.warn(fmt::format("{}: strokes[{}].path[{}]: is farther from any surface than the stroke's radius",
-                               options.strokes, i, point));
+  const auto warn = [&](std::size_t stroke, const std::vector<std::size_t>& points, const char* what) {
+    for (const std::size_t point : points) {
+      session.warn(fmt::format("{}: strokes[{}].path[{}]: {} farther from any surface than the stroke's radius",
+                               options.strokes, stroke, point, what));
     }
+  };
+  for (std::size_t i = 0; i < result.far_points.size(); ++i) {
+    warn(i, result.far_points[i], "is");
+    warn(i, result.far_images[i], "its mirror image is");
   }
   for (std::size_t i = 0; i < result.touched.size(); ++i) {
     if (result.touched[i] > 0) continue;

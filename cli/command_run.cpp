@@ -192,7 +192,7 @@ int run_run(RunCommand options) {
   settle_constraints(options.choices);
   session.require_outputs_in(options.folder(), output_files(options));
   require_color_choices(options.frame, true);
-  require_rereadable(options.scene);
+  require_copyable(options.scene, options.folder() / kLightsFile);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   const std::vector<NamedCamera> cameras = cameras_of(stage, session);

@@ -82,7 +82,7 @@ int run_solve(SolveCommand options) {
   refuse_what_excludes_each_other(options);
   session.require_outputs({options.output, beside(options.output, ".json"), options.save_target});
   if (!options.report.empty()) session.require_outputs_in(options.report, inverse::report_files());
-  require_rereadable(options.scene);
+  require_copyable(options.scene, options.output);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
   warn_of_scene_lights(stage, options.choices, session);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "cli/add_options.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 #include "renderer/io/environment_file.h"
 
 namespace chiaro::cli {
@@ -24,6 +27,18 @@ void apply(const EnvironmentOptions& options, renderer::Lights& lights) {
     throw renderer::Error({"", options.rotation ? "option --environment-rotation" : "option --environment-intensity",
                            "there is no environment", "--environment, or a scene or light file with one"});
   }
+}
+
+// Its brightest pixel, times its intensity.
+void require_no_brighter_than_may_be(const renderer::EnvironmentLight& light) {
+  float brightest = 0;
+  for (const renderer::Vec3f& pixel : light.map->pixels) brightest = std::max(brightest, max_component(pixel));
+  const double luminance = double(light.intensity) * double(brightest);
+  if (luminance <= double(renderer::kBrightest)) return;
+  throw renderer::Error(
+      {"", fmt::format("environment \"{}\"", light.name),
+       fmt::format("is too bright: {:g} cd/m², times an intensity of {:g}", brightest, light.intensity),
+       fmt::format("at most {:g} cd/m² in all", renderer::kBrightest)});
 }
 
 }  // namespace
@@ -54,6 +69,11 @@ renderer::Lights with_environment(renderer::Lights lights, const EnvironmentOpti
     lights.emplace_back(renderer::load_environment(options.image, warnings, options.config));
   }
   apply(options, lights);
+  for (const renderer::Light& light : lights) {
+    if (const auto* environment = std::get_if<renderer::EnvironmentLight>(&light)) {
+      require_no_brighter_than_may_be(*environment);
+    }
+  }
   return lights;
 }
 

@@ -109,10 +109,13 @@ void add_frame_options(CLI::App& command, FrameOptions& options, const std::stri
              [&options](const std::string& text) { options.box_filter = parse_filter(text); });
   add_number(command,
              {"--noise-threshold", "E",
-              "Sample until every 8 x 8 pixels' standard error is E of their mean; " + samples + " is then the most"},
+              "Sample until every 8 x 8 pixels' standard error is E of their mean, or of a tenth of the frame's median "
+              "where that is more; " +
+                  samples + " is then the most"},
              options.noise_threshold, kPositive);
   add_number(command,
-             {"--clamp-direct", "L", "Most cd/m² that a light adds to a sample directly, which biases (default: none)"},
+             {"--clamp-direct", "L",
+              "Most cd/m² that one ray to a light, or one that meets it, adds to a sample; biased (default: none)"},
              options.clamp_direct, kPositive);
   add_number(command, {"--clamp-indirect", "L", "The same after each bounce"}, options.clamp_indirect, kPositive);
   add_flag(command, "--wide-highlights", options.wide_highlights,

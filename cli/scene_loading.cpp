@@ -2,12 +2,31 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "cli/error_context.h"
 #include "renderer/core/error.h"
+#include "renderer/io/gltf_container.h"
 #include "renderer/io/light_file.h"
+#include "renderer/io/referred_files.h"
 #include "renderer/scene/texture_mip_maps.h"
 
 namespace chiaro::cli {
+namespace {
+
+constexpr double kGiB = 1024.0 * 1024 * 1024, kMostGiBOfGlb = 4;
+
+std::uintmax_t size_of_referred_files(const std::filesystem::path& scene) {
+  std::uintmax_t size = 0;
+  for (const std::filesystem::path& file : renderer::referred_files(scene)) {
+    std::error_code missing;
+    const std::uintmax_t bytes = std::filesystem::file_size(file, missing);
+    if (!missing) size += bytes;
+  }
+  return size;
+}
+
+}  // namespace
 
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session) {
@@ -31,11 +50,19 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
   return stage;
 }
 
-void require_rereadable(const std::string& scene) {
+void require_copyable(const std::string& scene, const std::filesystem::path& copy) {
   std::error_code unknown;
-  if (!std::filesystem::exists(scene, unknown) || std::filesystem::is_regular_file(scene, unknown)) return;
-  throw renderer::Error(
-      {scene, "", "is no file that can be read twice", "a scene file: the lights found are saved in a copy of it"});
+  if (!std::filesystem::exists(scene, unknown)) return;
+  if (!std::filesystem::is_regular_file(scene, unknown)) {
+    throw renderer::Error(
+        {scene, "", "is no file that can be read twice", "a scene file: the lights found are saved in a copy of it"});
+  }
+  if (renderer::writes_gltf_text(copy)) return;
+  const double gib = double(size_of_referred_files(scene)) / kGiB;
+  if (gib < kMostGiBOfGlb) return;
+  throw renderer::Error({copy.string(), "",
+                         fmt::format("cannot hold {}, whose buffers and images come to {:.1f} GiB", scene, gib),
+                         "at most 4 GiB in a .glb; solve -o LIGHTS.gltf takes more"});
 }
 
 void require_unchanged(const LoadedStage& stage) {

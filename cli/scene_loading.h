@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -28,8 +29,9 @@ struct LoadedStage {
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session);
 
-// Error for a pipe or a device: what is written of the scene is read once more.
-void require_rereadable(const std::string& scene);
+// Error, before any light is sought, for a scene that no copy with lights can be made of: a pipe or a device, which is
+// read but once, or one whose files do not fit into a .glb.
+void require_copyable(const std::string& scene, const std::filesystem::path& copy);
 
 // Error where the file is another than was loaded: what is made of it then is not of this scene.
 void require_unchanged(const LoadedStage& stage);

@@ -99,10 +99,7 @@ void place_on_scene(const renderer::RayTracer& tracer, inverse::Receivers& recei
                                        tracer.scene().path),
                            "points on the scene's surfaces"});
   }
-  // Rays pass the holes of masked surfaces, where vertices may well lie.
-  const bool has_holes = renderer::any_drawn_material(
-      tracer.scene(), [](const renderer::Material& m) { return m.alpha_mode != renderer::AlphaMode::kOpaque; });
-  if (fraction < kNearlyAllOnSurface && !has_holes) {
+  if (fraction < kNearlyAllOnSurface) {
     session.warn(fmt::format("{}: {:.0f} % of the vertices lie on no surface of {}: was the scene changed since?", file,
                              100 * (1 - fraction), tracer.scene().path));
   }

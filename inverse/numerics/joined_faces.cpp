@@ -251,7 +251,7 @@ class Joiner {
         found.corners.insert(found.corners.end(), piece.begin(), piece.end());
       }
     }
-    sort_by_x(found.corners);
+    sort_by_height(found.corners);
     return found;
   }
 
@@ -268,7 +268,7 @@ class Joiner {
     for (std::uint32_t p = 0; p < stays.size(); ++p) stays[p] = p;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vector3d& here = place(corners[i]);
-      for (std::size_t j = i; j-- > 0 && place(corners[j]).x() >= here.x() - tolerances_.contact;) {
+      for (std::size_t j = i; j-- > 0 && height(corners[j]) >= height(corners[i]) - tolerances_.contact;) {
         if (stays[corners[j]] != corners[j] || (place(corners[j]) - here).norm() > tolerances_.contact) continue;
         stays[corners[i]] = corners[j];
         break;
@@ -277,9 +277,12 @@ class Joiner {
     return stays;
   }
 
-  void sort_by_x(Points& corners) const {
+  // Along a direction that no wall of a building is square to: few corners are as high as each other.
+  double height(std::uint32_t point) const { return Vector3d(0.3, 0.5, 0.8).normalized().dot(place(point)); }
+
+  void sort_by_height(Points& corners) const {
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(place(a).x(), a) < std::pair(place(b).x(), b);
+      return std::pair(height(a), a) < std::pair(height(b), b);
     };
     std::sort(corners.begin(), corners.end(), before);
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
@@ -299,14 +302,14 @@ class Joiner {
   void append_corners_on(std::uint32_t a, std::uint32_t b, const Points& face, const Points& corners,
                          Points& out) const {
     const double tolerance = tolerances_.contact, length = (place(b) - place(a)).norm();
-    const auto [low, high] = std::minmax(place(a).x(), place(b).x());
+    const auto [low, high] = std::minmax({height(a), height(b)});
     const Vector3d along = (place(b) - place(a)) / length;
     const Eigen::Array3d least = place(a).cwiseMin(place(b)).array() - tolerance;
     const Eigen::Array3d most = place(a).cwiseMax(place(b)).array() + tolerance;
     std::vector<std::pair<double, std::uint32_t>> found;
     auto corner = std::lower_bound(corners.begin(), corners.end(), low - tolerance,
-                                   [&](std::uint32_t c, double x) { return place(c).x() < x; });
-    for (; corner != corners.end() && place(*corner).x() <= high + tolerance; ++corner) {
+                                   [&](std::uint32_t c, double least_height) { return height(c) < least_height; });
+    for (; corner != corners.end() && height(*corner) <= high + tolerance; ++corner) {
       const Vector3d& p = place(*corner);
       if ((p.array() < least).any() || (p.array() > most).any()) continue;
       const double at = along.dot(p - place(a));

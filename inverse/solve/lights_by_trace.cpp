@@ -27,6 +27,14 @@ Column at_one_candela(const Column& brought, const LightEstimate& light) {
   return brought * growth(light.intensity, Eigen::Array3d::Ones()).matrix().asDiagonal();
 }
 
+// A channel of one of them shines that was dark: nothing was traced of it.
+bool any_comes_on(const LightEstimates& before, const LightEstimates& after) {
+  for (std::size_t j = 0; j < after.size(); ++j) {
+    if ((before[j].intensity <= kDarkest && after[j].intensity > kDarkest).any()) return true;
+  }
+  return false;
+}
+
 // Paths of each of so many receivers that are traced again, after a trace of all.
 int paths_again(const FreshTrace& traced, std::size_t receivers) {
   return std::min(traced.samples, std::max(kLeastPaths, int(kPathsAgain / double(receivers))));
@@ -109,6 +117,9 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   by_trace.settling_seconds = clock.finish(
       "intensities", {{"relative_l2", relative_error(observations, total_illumination(unity, fit.intensity,
                                                                                       observations.wanted.rows()))}});
+  if (any_comes_on(lights, by_trace.lights)) {
+    by_trace.traced = trace_lights(problem, options, control, by_trace.lights, clock).traced;
+  }
   if (options.exact_lights > 0 && std::any_of(by_trace.lights.begin(), by_trace.lights.end(), is_dark))
     return with_none_dark(problem, options, control, std::move(by_trace), clock);
   return by_trace;

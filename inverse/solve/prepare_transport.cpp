@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "inverse/transport/bake.h"
+#include "inverse/transport/direct_light.h"
 #include "inverse/transport/grid_by_error.h"
 #include "renderer/core/error.h"
 
@@ -32,10 +33,32 @@ void require_fitting_cache(const SolveProblem& problem) {
   }
 }
 
+namespace {
+
+// A cache knows what is seen from beside the vertices. Of receivers that have moved to where pictures show them that is
+// found anew; of light by bounces there is little that changes on the way.
+void look_from_samples(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
+                       const renderer::Control& control, TransportCache& cache) {
+  renderer::parallel_for(cache.grid.positions.size(), "cache", control, [&](std::size_t light) {
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const renderer::SurfaceSample& at = problem.target.receivers.samples[chosen[k]];
+      const auto seed = std::uint32_t(light * chosen.size() + k);
+      const bool seen = sees(problem.tracer, at, cache.grid.positions[light], seed);
+      cache.visibility[light * chosen.size() + k] = seen ? 1 : 0;
+    }
+  });
+}
+
+}  // namespace
+
 PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
                                     const renderer::Control& control) {
   require_fitting_cache(problem);
-  if (problem.cache_file) return {load_transport_cache(*problem.cache_file, chosen)};
+  if (problem.cache_file) {
+    TransportCache cache = load_transport_cache(*problem.cache_file, chosen);
+    if (problem.target.receivers.samples_moved) look_from_samples(problem, chosen, control.without_progress(), cache);
+    return {std::move(cache)};
+  }
   const LightGrid grid =
       choose_light_grid(problem.tracer, problem.target.receivers, problem.grid, problem.bake, control);
   return {bake(problem.tracer, select_receivers(problem.target.receivers, chosen), grid, problem.bake, control).cache};

@@ -59,14 +59,11 @@ Vec3f mirrored(Vec3f point, const MirrorPlane& plane) {
   return point - 2 * dot(point - plane.point, plane.normal) * plane.normal;
 }
 
-SurfacePath lay_with_mirror_image(const ReceiverSurface& surface, const Stroke& stroke) {
-  SurfacePath path = lay_on_surface(surface, stroke.path, stroke.radius);
-  if (!stroke.mirror) return path;
+SurfacePath lay_mirror_image(const ReceiverSurface& surface, const Stroke& stroke) {
+  if (!stroke.mirror) return {};
   std::vector<Vec3f> image;
   for (const Vec3f point : stroke.path) image.push_back(mirrored(point, *stroke.mirror));
-  const SurfacePath other = lay_on_surface(surface, image, stroke.radius);
-  path.pieces.insert(path.pieces.end(), other.pieces.begin(), other.pieces.end());
-  return path;
+  return lay_on_surface(surface, image, stroke.radius);
 }
 
 std::vector<PathDistance> distances(const ReceiverSurface& surface, const SurfacePath& path, const Stroke& stroke,
@@ -79,9 +76,11 @@ std::vector<PathDistance> distances(const ReceiverSurface& surface, const Surfac
 }  // namespace
 
 BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke, const renderer::Control& control) {
-  const SurfacePath path = lay_with_mirror_image(surface, stroke);
+  SurfacePath path = lay_on_surface(surface, stroke.path, stroke.radius);
+  SurfacePath image = lay_mirror_image(surface, stroke);
+  path.pieces.insert(path.pieces.end(), image.pieces.begin(), image.pieces.end());
   std::vector<Sides> sides(path.pieces.size());
-  BrushFootprint footprint{{}, path.far_points};
+  BrushFootprint footprint{{}, path.far_points, std::move(image.far_points)};
   for (const PathDistance& near : distances(surface, path, stroke, control)) {
     Sides& side = sides[near.piece];
     if (stroke.facing && side.empty()) side = sides_around(surface, path, near.piece, stroke.radius);

@@ -16,7 +16,8 @@ struct TouchedReceiver {
 
 struct BrushFootprint {
   std::vector<TouchedReceiver> touched;  // ascending
-  std::vector<std::size_t> far_points;   // numbers of points of the path farther than the radius from any surface
+  std::vector<std::size_t> far_points;   // numbers of points of the path farther than the radius from any surface …
+  std::vector<std::size_t> far_images;   // … and of those whose mirror images are
 };
 
 // Receivers within the stroke's radius of its path as it lies on the surface, or of the mirror image of it. Distance is

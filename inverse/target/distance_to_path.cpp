@@ -46,6 +46,9 @@ void visit_near_piece(const ReceiverSurface& surface, const Piece& piece, double
   }
 }
 
+// How much a list may grow, besides doubling, until what is twice in it goes.
+constexpr std::size_t kSpare = 500'000;
+
 void sort_unique(std::vector<std::uint32_t>& numbers) {
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -54,12 +57,16 @@ void sort_unique(std::vector<std::uint32_t>& numbers) {
 std::vector<std::uint32_t> triangles_near(const ReceiverSurface& surface, const SurfacePath& path, double radius,
                                           const renderer::Control& control) {
   std::vector<std::uint32_t> near;
+  std::size_t unique = 0;
   for (const Piece& piece : path.pieces) {
     control.stop_if_requested();
     visit_near_piece(surface, piece, radius, [&](std::uint32_t item, const Vector3d& center, double around) {
       if (closest_on_surface(surface, item, center).distance <= around) near.push_back(item);
     });
-    if (near.size() > 1'000'000) sort_unique(near);
+    if (near.size() > 2 * unique + kSpare) {
+      sort_unique(near);
+      unique = near.size();
+    }
   }
   sort_unique(near);
   return near;
@@ -304,6 +311,15 @@ std::vector<numerics::GeodesicDistance> front_distances(const LocalSurface& loca
   return of_receiver;
 }
 
+// Of each receiver that of the nearest piece; ascending.
+void keep_nearest(std::vector<PathDistance>& distances) {
+  std::sort(distances.begin(), distances.end(), [](const PathDistance& a, const PathDistance& b) {
+    return std::tie(a.receiver, a.distance, a.piece) < std::tie(b.receiver, b.distance, b.piece);
+  });
+  const auto same = [](const PathDistance& a, const PathDistance& b) { return a.receiver == b.receiver; };
+  distances.erase(std::unique(distances.begin(), distances.end(), same), distances.end());
+}
+
 }  // namespace
 
 std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface, const SurfacePath& path,
@@ -322,6 +338,7 @@ std::vector<PathDistance> distances_along_surface(const ReceiverSurface& surface
 std::vector<PathDistance> distances_through_space(const ReceiverSurface& surface, const SurfacePath& path,
                                                   double radius, const renderer::Control& control) {
   std::vector<PathDistance> all;
+  std::size_t kept = 0;
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
     control.stop_if_requested();
     const Piece& piece = path.pieces[i];
@@ -337,13 +354,11 @@ std::vector<PathDistance> distances_through_space(const ReceiverSurface& surface
       const double distance = (piece.from + t * (piece.to - piece.from) - place).norm();
       if (distance <= radius) all.push_back({receiver, distance, i});
     }
+    if (all.size() < 2 * kept + kSpare) continue;
+    keep_nearest(all);
+    kept = all.size();
   }
-  const auto before = [](const PathDistance& a, const PathDistance& b) {
-    return std::tie(a.receiver, a.distance, a.piece) < std::tie(b.receiver, b.distance, b.piece);
-  };
-  std::sort(all.begin(), all.end(), before);
-  const auto same = [](const PathDistance& a, const PathDistance& b) { return a.receiver == b.receiver; };
-  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  keep_nearest(all);
   return all;
 }
 

@@ -98,7 +98,7 @@ bool is_used(const Lightmap& map, std::size_t texel, const TexelCover& cover, Te
     why = &counts.overlapping;
   } else if (!(map.weight[texel] > 0)) {
     why = &counts.masked;
-  } else if (!is_finite(value) || min_component(value) < 0 || max_component(value) > renderer::kBrightest) {
+  } else if (!renderer::is_light(value)) {
     why = &counts.invalid;
   }
   ++*(why ? why : &counts.used);

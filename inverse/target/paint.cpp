@@ -79,7 +79,7 @@ PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions
                   const renderer::Control& control) {
   check_options(options);
   CHIARO_CHECK(base.illumination.size() == base.receivers.size());
-  PaintResult result{base, {}, {}};
+  PaintResult result{base, {}, {}, {}};
   if (options.unpainted_weight) result.target.weight.assign(base.receivers.size(), *options.unpainted_weight);
   CHIARO_CHECK(result.target.weight.size() == base.receivers.size());
   const ReceiverSurface surface = make_receiver_surface(base.receivers);
@@ -89,6 +89,7 @@ PaintResult paint(const Target& base, const Strokes& strokes, const PaintOptions
     for (const TouchedReceiver& touched : footprint.touched) apply_to_receiver(result.target, stroke, touched);
     result.touched.push_back(footprint.touched.size());
     result.far_points.push_back(std::move(footprint.far_points));
+    result.far_images.push_back(std::move(footprint.far_images));
   }
   return result;
 }

@@ -50,8 +50,8 @@ struct PaintOptions {
 struct PaintResult {
   Target target;
   std::vector<std::size_t> touched;  // receivers per stroke
-  std::vector<std::vector<std::size_t>>
-      far_points;  // per stroke: of its path, farther than its radius from any surface
+  // Per stroke: points of its path farther than its radius from any surface, and those whose mirror images are.
+  std::vector<std::vector<std::size_t>> far_points, far_images;
 };
 
 // Applies the strokes in order to `base`: its illumination is what they change, and unpainted_weight, or else its own

@@ -116,7 +116,7 @@ class FrameReader {
     const bool is_beauty = frame_.content == PictureContent::kBeauty;
     if (is_beauty && min_component(albedo) < kDarkest) return {PixelKind::kDark, {}};
     const Vec3f illumination = is_beauty ? color / albedo : color;
-    if (!(max_component(illumination) <= renderer::kBrightest)) return {PixelKind::kInvalid, {}};
+    if (!renderer::is_light(illumination)) return {PixelKind::kInvalid, {}};
     return {PixelKind::kUsed, {at.position, at.geometric_normal, illumination, weight}};
   }
 

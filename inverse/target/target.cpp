@@ -26,7 +26,7 @@ bool has_values(const VertexMeshPart& part) { return !part.illumination.empty() 
 
 // Of what is read and of what is written: no file of ours is refused later.
 void check_illumination(const std::string& file, const VertexMeshPart& part, std::size_t vertex, Vec3f value) {
-  if (is_finite(value) && min_component(value) >= 0 && max_component(value) <= renderer::kBrightest) return;
+  if (renderer::is_light(value)) return;
   fail_at_vertex(file, part, vertex, "illumination is negative or too large",
                  fmt::format("0 to {:g} cd/m²", renderer::kBrightest));
 }

@@ -194,6 +194,7 @@ void move_samples(std::span<const SurfaceValue> values, const std::vector<Placed
                   Target& target) {
   const std::vector<const PlacedValue*> nearest = nearest_values(placed, target.receivers.size());
   target.receivers.samples.resize(target.receivers.size());
+  target.receivers.samples_moved = true;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     if (nearest[i] == nullptr) continue;
     target.receivers.samples[i] = sample_at(target.receivers, nearest[i]->at, values[nearest[i]->number]);

@@ -83,13 +83,23 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
   summary_.check_seconds = seconds_since(start);
 }
 
+// Of gather points and of records, which a band has its own list of.
+double Baker::bytes_kept() const {
+  const double samples = double(gather_.points.size() + gather_.cell_samples.size()) * sizeof(renderer::SurfaceSample);
+  const double bounces = double(gather_.interreflection.one_bounce.entry_count()) * sizeof(SparseTransport::Entry);
+  const double records = double(records_.shares.size()) * sizeof(IrradianceRecords::Share) +
+                         double(records_.share_start.size() + records_.receivers.size()) * sizeof(std::size_t);
+  return samples + bounces + 2 * records;
+}
+
 // What is worked on at once, beside the illumination of the records by a band of lights: a third for each.
 void Baker::set_memory(double memory) {
+  memory -= bytes_kept();
   const double records = double(records_.receivers.size()),
                band = double(std::min(kBand, header_.grid.positions.size()));
   const double per_value = double(sizeof(LightBlock)) / kLightBlock;
   const double per_receiver = kBytesPerEntry * double(kBand);
-  const double per_record = double(options_.samples) * sizeof(SparseTransport::Entry);
+  const double per_record = records > 0 ? double(options_.samples) * sizeof(SparseTransport::Entry) : 1;
   const double per_light = double(gather_.points.size()) * per_value;
   const double least = std::max({per_receiver * kLeastReceivers, per_record * kLeastRecords, per_light * kLeastLights});
   const double beside = records * band * per_value, each = (memory - beside) / 3;

@@ -38,6 +38,7 @@ class Baker {
             const renderer::Control& control);
 
  private:
+  double bytes_kept() const;
   void set_memory(double bytes);
   void set_receivers(std::size_t first, std::size_t last);
   void set_lights(std::size_t first, std::size_t count, const renderer::Control& control);

@@ -146,19 +146,25 @@ struct Unfinished {
   std::unique_ptr<TransportCacheWriter> writer;
 };
 
-// Another file than what had the name: nothing is written through a link or a pipe, nor into a file with a second name.
-renderer::FileLock replace_file(const fs::path& file) {
+// Another file than what has the name, which this process holds or which is none: nothing is written through a link or
+// a pipe, nor into a file with a second name. Nothing where another process has made one meanwhile.
+std::optional<renderer::FileLock> replace_file(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_directory(fs::symlink_status(file, ignored))) fs::remove(file, ignored);
-  return renderer::FileLock(file);
+  return renderer::FileLock::make_new(file);
 }
 
 // Unless another process is writing it.
 renderer::FileLock replace_idle_file(const fs::path& file) {
-  std::error_code ignored;
-  std::optional<renderer::FileLock> there;
-  if (fs::is_regular_file(fs::symlink_status(file, ignored))) there.emplace(file);
-  return replace_file(file);
+  for (int tries = 0; tries < 2; ++tries) {
+    std::error_code ignored;
+    std::optional<renderer::FileLock> there;
+    const fs::file_type type = fs::symlink_status(file, ignored).type();
+    if (type == fs::file_type::regular) there.emplace(file);
+    auto made = type == fs::file_type::not_found ? renderer::FileLock::make_new(file) : replace_file(file);
+    if (made) return std::move(*made);
+  }
+  return renderer::FileLock(file);
 }
 
 std::unique_ptr<TransportCacheWriter> begin_anew(const fs::path& unfinished, const TransportCache& header,
@@ -170,7 +176,8 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
            const renderer::Control& control, Unfinished& bake) {
   const auto unfinished_cache = open_unfinished(unfinished);
   if (!unfinished_cache) {
-    bake.lock = replace_file(unfinished);
+    auto made = replace_file(unfinished);
+    bake.lock = made ? std::move(*made) : renderer::FileLock(unfinished);
     bake.writer = begin_anew(unfinished, header, range);
     return;
   }

@@ -125,11 +125,43 @@ std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
   return pointers;
 }
 
+double volume_of(const Box3f& box) {
+  const Vec3f extent = box.extent();
+  return double(extent.x) * double(extent.y) * double(extent.z);
+}
+
+// What of a box belongs to each of some places; all of it where there are none.
+std::vector<Box3f> common_parts(const Box3f& box, const std::vector<Box3f>& places) {
+  if (places.empty()) return {box};
+  std::vector<Box3f> common;
+  for (const Box3f& place : places) {
+    const Box3f part{max(box.min, place.min), min(box.max, place.max)};
+    if (!part.empty()) common.push_back(part);
+  }
+  return common;
+}
+
+// In free space where lights may stand, evenly.
+std::vector<Vec3f> test_positions(const RayTracer& tracer, const Box3f& region, const std::vector<Box3f>& places,
+                                  std::uint64_t seed) {
+  const std::vector<Box3f> parts = common_parts(region, places);
+  double volume = 0;
+  for (const Box3f& part : parts) volume += volume_of(part);
+  std::vector<Vec3f> positions;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double share = volume > 0 ? volume_of(parts[p]) / volume : 1 / double(parts.size());
+    const std::size_t count = std::max<std::size_t>(1, std::size_t(std::lround(share * double(kPositions))));
+    const std::vector<Vec3f> some = random_light_positions(tracer, parts[p], count, seed + p);
+    positions.insert(positions.end(), some.begin(), some.end());
+  }
+  return positions;
+}
+
 // The coarsest regular grid of this median error.
 LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, const LightGridOptions& options,
                        const BakeSettings& settings, const renderer::Control& control) {
   const Box3f region = make_light_grid(tracer, {.region = options.region, .parts = options.parts}).region;
-  const auto positions = test.exact(random_light_positions(tracer, region, kPositions, settings.seed));
+  const auto positions = test.exact(test_positions(tracer, region, options.parts, settings.seed));
   double lights = kFirstLights, least = std::numeric_limits<double>::infinity();
   while (lights <= double(kMostGridLights)) {
     control.stop_if_requested();
@@ -167,11 +199,13 @@ std::vector<GridCell> halves(const LightGrid& grid, const GridCell& cell) {
 // Halves cells where interpolation between the lights that there are is wrong, again and again.
 class Refinement {
  public:
-  Refinement(const RayTracer& tracer, const InterpolationTest& test, LightGrid grid, double most_error,
-             const BakeSettings& settings)
+  // places: where lights may stand; none: anywhere.
+  Refinement(const RayTracer& tracer, const InterpolationTest& test, LightGrid grid, std::vector<Box3f> places,
+             double most_error, const BakeSettings& settings)
       : free_space_(tracer),
         test_(test),
         grid_(std::move(grid)),
+        places_(std::move(places)),
         most_error_(most_error),
         seed_(settings.seed + kTestSeed),
         rows_of_nodes_(test.rows_of(grid_.positions)) {}
@@ -193,12 +227,14 @@ class Refinement {
   }
 
  private:
-  // In free space; absent where none is found.
+  // In free space where lights may stand; absent where none is found.
   std::optional<Vec3f> test_position(const GridCell& cell) const {
     const Box3f bounds = bounds_of(grid_, cell);
+    const std::vector<Box3f> parts = common_parts(bounds, places_);
+    if (parts.empty()) return std::nullopt;
     for (std::uint32_t k = 0; k < kMostTries; ++k) {
       renderer::Sampler sampler(seed_ + std::uint64_t(cell.level), std::uint32_t(number_of(grid_, cell)), k);
-      const Vec3f at = random_position(bounds, sampler);
+      const Vec3f at = random_position(parts[k % parts.size()], sampler);
       if (free_space_.contains(at, kTouching * bounds.diagonal())) return at;
     }
     return std::nullopt;
@@ -234,6 +270,7 @@ class Refinement {
     for (const GridCell& part : parts) {
       const Box3f bounds = bounds_of(grid_, part);
       const Vec3f middle = bounds.min + 0.5F * bounds.extent();
+      if (common_parts(bounds, places_).empty()) continue;
       if (!free_space_.contains(middle, kTouching * bounds.diagonal())) continue;
       cells.push_back({part.level, number_of(grid_, part)});
       positions.push_back(middle);
@@ -254,6 +291,7 @@ class Refinement {
   FreeSpace free_space_;
   const InterpolationTest& test_;
   LightGrid grid_;
+  std::vector<Box3f> places_;
   double most_error_;
   std::uint64_t seed_;
   std::vector<Row> rows_of_nodes_;
@@ -268,7 +306,7 @@ LightGrid choose_light_grid(const RayTracer& tracer, const Receivers& receivers,
   if (!(options.error > 0)) return make_light_grid(tracer, options);
   const InterpolationTest test(tracer, receivers, settings, control);
   LightGrid grid = regular_grid(tracer, test, options, settings, control);
-  return Refinement(tracer, test, std::move(grid), kLocalError * options.error, settings).run(control);
+  return Refinement(tracer, test, std::move(grid), options.parts, kLocalError * options.error, settings).run(control);
 }
 
 }  // namespace chiaro::inverse

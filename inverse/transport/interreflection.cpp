@@ -35,11 +35,17 @@ std::vector<Lanes> first_terms(const SparseTransport& one_bounce, const std::vec
   for (int bounce = 1; bounce < count; ++bounce) {
     multiply(one_bounce, term, next);
     std::swap(term, next);
+    bool changes = false;
     for (std::size_t i = 0; i < sum.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
-        for (int l = 0; l < Lanes::kLanes; ++l) sum[i].channel[c][l] += term[i].channel[c][l];
+        for (int l = 0; l < Lanes::kLanes; ++l) {
+          const float before = sum[i].channel[c][l];
+          sum[i].channel[c][l] += term[i].channel[c][l];
+          changes |= sum[i].channel[c][l] != before;
+        }
       }
     }
+    if (!changes) break;  // of thousands of bounces the last are too dim
   }
   return sum;
 }

@@ -242,7 +242,8 @@ double fraction_on_surface(const renderer::RayTracer& tracer, const Receivers& r
   std::size_t probes = 0, found = 0;
   for (std::size_t i = 0; i < receivers.size(); i += stride, ++probes) {
     const renderer::SurfaceSample& s = receivers.samples[i];
-    const renderer::Ray ray{s.position + reach * s.normal, -s.normal, 0, 2 * reach, std::uint32_t(i)};
+    renderer::Ray ray{s.position + reach * s.normal, -s.normal, 0, 2 * reach};
+    ray.meets_all = true;  // vertices may well lie in holes of masked surfaces, and on unlit ones
     found += tracer.intersect(ray).has_value() ? 1 : 0;
   }
   return probes > 0 ? double(found) / double(probes) : 0;

@@ -25,6 +25,7 @@ struct Receivers {
   std::vector<renderer::Triangle> triangles;  // over positions
   std::vector<Part> parts;
   std::vector<renderer::SurfaceSample> samples;  // where illumination is sampled: receiver_samples.h
+  bool samples_moved = false;                    // from beside their vertices, to where pictures show them
 
   std::size_t size() const { return positions.size(); }
 };

@@ -38,9 +38,11 @@ struct Entry {
   Vec3f indirect;
 };
 
+// Where the visibility is no number, what is indirect is none either, for require_finite().
 Entry entry_of(const float* pixel, const std::array<int, 4>& channels, float scale) {
-  return {std::uint8_t(pixel[channels[3]] > 0.5F ? 1 : 0),
-          Vec3f{pixel[channels[2]], pixel[channels[1]], pixel[channels[0]]} / scale};
+  const float visibility = pixel[channels[3]], part_of_number = std::isfinite(visibility) ? 0 : visibility;
+  return {std::uint8_t(visibility > 0.5F ? 1 : 0),
+          Vec3f{pixel[channels[2]] + part_of_number, pixel[channels[1]], pixel[channels[0]]} / scale};
 }
 
 renderer::ExrTiles shape_of(const TransportCache& cache, std::size_t first, std::size_t last) {

@@ -23,7 +23,16 @@ bool names_open_file(const std::filesystem::path& path, int descriptor) {
 }
 
 FileLock::FileLock(const std::filesystem::path& path)
-    : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    : FileLock(path, ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {}
+
+std::optional<FileLock> FileLock::make_new(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0 && errno == EEXIST) return std::nullopt;
+  return FileLock(path, file);
+}
+
+// file: as it was opened, or not.
+FileLock::FileLock(const std::filesystem::path& path, int file) : file_(file) {
   if (file_ < 0) throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
   // It may have been renamed between being opened and being locked.
   const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0;

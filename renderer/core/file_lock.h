@@ -2,6 +2,7 @@
 // One process at a time works on a file.
 
 #include <filesystem>
+#include <optional>
 
 namespace chiaro::renderer {
 
@@ -13,11 +14,14 @@ bool names_open_file(const std::filesystem::path& path, int descriptor);
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& path);
+  // A new file alone; nothing where there is one of that name.
+  static std::optional<FileLock> make_new(const std::filesystem::path& path);
   ~FileLock();
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
 
  private:
+  FileLock(const std::filesystem::path& path, int file);
   int file_;
 };
 

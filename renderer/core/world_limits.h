@@ -16,6 +16,11 @@ inline constexpr float kLeastScene = 1e-5F;
 // Candela, lux or cd/m² of anything that gives light, and of what is wanted of it: a sun at the world's end.
 inline constexpr float kBrightest = 1e24F;
 
+// Of red, green and blue: light, and no more than there may be.
+inline bool is_light(Vec3f value) {
+  return is_finite(value) && min_component(value) >= 0 && max_component(value) <= kBrightest;
+}
+
 inline bool in_world(Vec3f point) {
   return std::abs(point.x) <= kWorldLimit && std::abs(point.y) <= kWorldLimit && std::abs(point.z) <= kWorldLimit;
 }

@@ -40,7 +40,7 @@ void warn_of_shape(const EnvironmentMap& map, const std::string& file, std::vect
 std::size_t mend_pixels(EnvironmentMap& map) {
   std::size_t count = 0;
   for (Vec3f& color : map.pixels) {
-    if (min_component(color) >= 0 && max_component(color) <= kBrightest && is_finite(color)) continue;
+    if (is_light(color)) continue;
     if (!is_mendable_rounding(color)) ++count;
     for (int c = 0; c < 3; ++c) {
       if (!std::isfinite(color[c]) || color[c] < 0) color[c] = mended(color[c]);

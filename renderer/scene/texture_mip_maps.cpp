@@ -30,7 +30,8 @@ class MippedTextures {
     if (options.alpha_weighted) {
       options.alpha_weighted = !all_opaque(texture.rgba) || !all_opaque(texture.wide_rgba);
     }
-    const auto [known, is_new] = by_use_.try_emplace({use.texture, options.srgb, options.alpha_weighted}, use.texture);
+    const auto [known, is_new] =
+        by_use_.try_emplace({use.texture, options.srgb, options.alpha_weighted, options.wide}, use.texture);
     if (is_new && options_[use.texture]) {
       known->second = int(textures_.size());
       textures_.push_back(Texture(texture));
@@ -49,14 +50,14 @@ class MippedTextures {
  private:
   std::vector<Texture>& textures_;
   std::vector<std::optional<MipOptions>> options_;
-  std::map<std::tuple<int, bool, bool>, int> by_use_;
+  std::map<std::tuple<int, bool, bool, bool>, int> by_use_;
 };
 
 void add_uses(MippedTextures& textures, Material& m) {
   if (!m.constant_base_color) {
     textures.add(m.base_color_texture, {.srgb = true, .alpha_weighted = m.alpha_mode != AlphaMode::kOpaque});
   }
-  textures.add(m.emission_texture, {.srgb = true});
+  textures.add(m.emission_texture, {.srgb = true, .wide = true});
   textures.add(m.normal_texture, {});
   if (!m.lambert) textures.add(m.metallic_roughness_texture, {});
 }

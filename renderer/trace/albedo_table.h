@@ -18,14 +18,19 @@ struct AlbedoTable {
   std::array<std::array<Albedo, kSize>, kSize> directional;  // [roughness][cosine]
   std::array<Albedo, kSize> mean;                            // [roughness], of cosine-weighted viewers
 
+  // Of the mean over viewers, 2 ∫ albedo cosθ d(cosθ), up to a factor: the trapezoidal rule. (The first step's cosine is
+  // zero.)
+  static float weight_in_mean(int step) { return step == kSize - 1 ? 0.5F * float(step) : float(step); }
+
   Albedo at(float cosine, float alpha) const {
     const Place r = place(std::sqrt(alpha)), c = place(cosine);
     const auto &low = directional[r.low], &high = directional[r.low + 1];
     return mix(r.t, mix(c.t, low[c.low], low[c.low + 1]), mix(c.t, high[c.low], high[c.low + 1]));
   }
-  Albedo mean_at(float alpha) const {
+  Albedo mean_at(float alpha) const { return between(mean, alpha); }
+  static Albedo between(const std::array<Albedo, kSize>& of_roughness, float alpha) {
     const Place r = place(std::sqrt(alpha));
-    return mix(r.t, mean[r.low], mean[r.low + 1]);
+    return mix(r.t, of_roughness[r.low], of_roughness[r.low + 1]);
   }
 
  private:
@@ -54,8 +59,9 @@ AlbedoTable<Albedo> make_albedo_table(const Integrate& integrate) {
       const float cosine = std::max(1e-3F, float(c) / (kSize - 1));
       const Albedo albedo = integrate(cosine, roughness * roughness);
       table.directional[r][c] = albedo;
-      total += cosine;  // the weight of each: 2 cosθ d(cosθ), up to a factor
-      mean = mix(cosine / total, mean, albedo);
+      const float weight = AlbedoTable<Albedo>::weight_in_mean(c);
+      total += weight;
+      if (weight > 0) mean = mix(weight / total, mean, albedo);
     }
     table.mean[r] = mean;
   }

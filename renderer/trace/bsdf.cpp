@@ -162,9 +162,9 @@ Vec3f hemispherical_albedo(const SurfacePoint& point) {
   if (point.lambert) return point.base_color;
   Vec3f albedo = BsdfBase(point).hemispherical_reflectance();
   if (!has_layers(point)) return albedo;
-  const Vec3f sheen = BsdfSheen(point).mean_albedo();
+  const BsdfSheen sheen(point);
   const float coat = BsdfClearcoat(point).mean_albedo();
-  albedo = sheen + (1 - max_component(sheen)) * albedo;
+  albedo = sheen.mean_albedo() + sheen.mean_below() * albedo;
   return coat * Vec3f{1, 1, 1} + (1 - coat) * albedo;
 }
 

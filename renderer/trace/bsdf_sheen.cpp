@@ -29,4 +29,6 @@ float BsdfSheen::albedo(float cosine) const { return strength_ * std::min(1.0F, 
 
 Vec3f BsdfSheen::mean_albedo() const { return mean_sheen_albedo(alpha_) * color_; }
 
+float BsdfSheen::mean_below() const { return 1 - strength_ * mean_larger_sheen_albedo(alpha_); }
+
 }  // namespace chiaro::renderer

@@ -19,7 +19,8 @@ class BsdfSheen {
   static Vec3f sample(Vec2f u);
   float albedo(float cosine) const;  // of its strongest channel
   float below(float cosine_o, float cosine_i) const { return 1 - std::max(albedo(cosine_o), albedo(cosine_i)); }
-  Vec3f mean_albedo() const;  // under a cosine-weighted sky
+  Vec3f mean_albedo() const;  // under a cosine-weighted sky …
+  float mean_below() const;   // … and of what is diffuse below
 
  private:
   Vec3f color_;

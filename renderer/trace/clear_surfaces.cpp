@@ -97,7 +97,7 @@ Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& 
   for (int surfaces = 0; surfaces < kMostClearSurfaces; ++surfaces) {
     const auto hit = tracer.intersect(rest);
     const float distance = (hit ? hit->distance : rest.far) * length(rest.direction);
-    if (!hit) return distance < kInfinity ? through * inside.transmittance(distance) : through;
+    if (!hit) return through * inside.transmittance(distance);
     const SurfacePoint point = make_surface_point(tracer.scene(), rest, *hit);
     through *= inside.transmittance(point, distance) * Bsdf(point).clear(to_viewer);
     if (!(max_component(through) > 0)) return {};

@@ -28,6 +28,13 @@ EmissionCone emission_cone(const Light& light) {
   return {{}, {0, 0, 1}, {}, 0};
 }
 
+// Of a point or spot light.
+Vec3f intensity_towards(const Light& light, Vec3f direction) {
+  const auto* spot = std::get_if<SpotLight>(&light);
+  if (spot == nullptr) return std::get<PointLight>(light).intensity;
+  return spot->intensity * spot_cone(*spot).falloff(versine(direction, spot->direction)).value;
+}
+
 struct PunctualVisitor {
   Vec3f point;
 
@@ -107,8 +114,7 @@ PunctualEmission::Sample PunctualEmission::sample(float pick, Vec2f u) const {
   const Vec3f direction{sine * std::cos(phi), sine * std::sin(phi), 1 - versine};
   Sample s{chosen, cone.origin, Frame3f(cone.axis).world_from_local(direction), {}};
   s.direction = normalize(s.direction);
-  // The light's own falloff, read one metre away.
-  s.intensity = sample_punctual(lights_[chosen], cone.origin + s.direction).irradiance;
+  s.intensity = intensity_towards(lights_[chosen], s.direction);
   return s;
 }
 

@@ -34,7 +34,7 @@ class LightSelection {
   // Keeps references to both, which must outlive it. visibility: nullptr where nothing is learnt.
   explicit LightSelection(const Lights& lights, LightVisibility* visibility = nullptr);
   bool few() const { return order_.size() <= kFew; }
-  bool weighs_all() const { return tree_.empty(); }
+  bool weighs_all() const { return order_.size() <= kWeighed; }
 
   struct Pick {
     std::size_t light = 0;

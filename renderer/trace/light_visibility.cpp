@@ -9,6 +9,8 @@ namespace {
 constexpr std::size_t kMostCounts = 500'000;  // 6 MB
 constexpr double kMostCells = 32 * 32 * 32;
 constexpr std::size_t kWays = 6;
+constexpr std::uint64_t kManyRays = std::uint64_t(1)
+                                    << 28;  // of a light and a part: a pass brings fewer than 2³² − this
 // No light's chance falls below this part of what it would be if it were seen.
 constexpr float kLeastFactor = 0.05F;
 
@@ -18,16 +20,29 @@ std::size_t way_of(Vec3f normal) {
   return 2 * std::size_t(axis) + (normal[axis] < 0 ? 1 : 0);
 }
 
+// Metres: of cubes of which about so many fill the box. An axis along which it is thinner than they counts for nothing.
+double edge_of_cells(Vec3f extent, double cells) {
+  double edge = 0;
+  for (int pass = 0; pass < 3; ++pass) {
+    double product = 1;
+    int axes = 0;
+    for (int a = 0; a < 3; ++a) {
+      if (!(double(extent[a]) > edge)) continue;
+      product *= double(extent[a]);
+      ++axes;
+    }
+    if (axes > 0) edge = std::pow(product / cells, 1.0 / axes);
+  }
+  return edge;
+}
+
 }  // namespace
 
 LightVisibility::LightVisibility(const Box3f& bounds, std::size_t lights)
     : lights_(std::max<std::size_t>(1, (lights + kLanes - 1) / kLanes) * kLanes), origin_(bounds.min) {
   const double cells = std::clamp(double(kMostCounts) / double(kWays * lights_), 1.0, kMostCells);
   const Vec3f extent = bounds.extent();
-  const double least = 1e-3 * double(max_component(extent));  // of a flat scene
-  double volume = 1;
-  for (int a = 0; a < 3; ++a) volume *= std::max(double(extent[a]), least);
-  const double edge = std::cbrt(volume / cells);
+  const double edge = edge_of_cells(extent, cells);
   std::size_t all = kWays * lights_;
   for (int a = 0; a < 3; ++a) {
     counts_[a] = edge > 0 ? std::max(1, int(double(extent[a]) / edge)) : 1;
@@ -57,8 +72,10 @@ void LightVisibility::learn() {
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const std::uint64_t rays = rays_[i].load(std::memory_order_relaxed);
     if (rays == 0) continue;
-    const auto all = float(rays & 0xffffffffU), seen = float(rays >> 32);
-    factors_[i] = std::max(kLeastFactor, std::sqrt((seen + 1) / (all + 1)));
+    const std::uint64_t all = rays & 0xffffffffU, seen = rays >> 32;
+    factors_[i] = std::max(kLeastFactor, std::sqrt((float(seen) + 1) / (float(all) + 1)));
+    // Later rays find room.
+    if (all > kManyRays) rays_[i].store(((seen / 2) << 32) + all / 2, std::memory_order_relaxed);
   }
 }
 

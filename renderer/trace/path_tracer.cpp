@@ -252,6 +252,7 @@ bool PathTracer::scatter(const Vertex& vertex, const SurfacePoint& point, Sample
   if (!next) return false;
   throughput *= next->weight;
   const Vec3f origin = vertex.ray_origin(next->direction);
+  ray.turned = !next->straight;
   if (next->straight) {
     ray.go_straight(point, length(point.position - ray.origin));
     return true;
@@ -272,7 +273,10 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
     Ray ray{scattered.origin, scattered.direction, 0, kInfinity, path.sampler.next_bits()};
     ray.of_camera = scattered.from_camera();
     const auto hit = tracer_.intersect(ray);
-    if (!hit) return add_missed(scattered, index, throughput, path);
+    if (!hit) {
+      if (solids_) throughput *= scattered.media.transmittance(kInfinity);
+      return add_missed(scattered, index, throughput, path);
+    }
     const SurfacePoint point = make_surface_point(tracer_.scene(), ray, *hit);
     if (solids_) throughput *= scattered.media.transmittance(point, hit->distance);
     add_emission(point, *hit, scattered, index, throughput, path);
@@ -295,7 +299,7 @@ void PathTracer::trace(ScatteredRay scattered, int index, Vec3f throughput, Path
     add_lights(vertex, throughput, path);
     if (index == bounces_ && !has_emission() && !clear_surfaces_) return;
     if (!scatter(vertex, point, path.sampler, scattered, throughput)) return;
-    const bool turned = scattered.travelled == 0;
+    const bool turned = scattered.turned;
     if (turned && index == bounces_ && !has_emission()) return;
     if (turned && index + 1 >= kRouletteVertex) {
       const float survival = std::min(kMostSurvival, max_component(throughput));
@@ -320,7 +324,7 @@ void PathTracer::add_scattered(const SurfacePoint& point, const Media& media, Ve
   ScatteredRay ray{
       .origin = point.position + to_viewer, .direction = -to_viewer, .position = {}, .normal = {}, .media = media};
   if (!scatter(vertex, point, sampler, ray, throughput)) return;
-  trace(ray, ray.travelled == 0 ? index + 1 : index, throughput, path);
+  trace(ray, ray.turned ? index + 1 : index, throughput, path);
 }
 
 PathTracer::Vertex PathTracer::vertex_at(const Receiver& receiver) const {

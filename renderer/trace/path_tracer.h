@@ -92,6 +92,7 @@ class PathTracer {
     float pdf = kInfinity;   // of the direction, per steradian; infinite: a camera's
     Vec3f position, normal;  // of the vertex that scattered it, as lights are picked for it
     float travelled = 0;     // metres from there to origin
+    bool turned = false;     // by the surface that it leaves
     bool rough = false;      // light has been scattered widely on the way
     Media media;             // at origin
 

@@ -37,7 +37,7 @@ struct RayContext {
   RTCIntersectContext embree;  // first: Embree hands this address to the filter
   std::uint32_t alpha_seed;
   ClearSurfaces clear;
-  bool of_camera;
+  bool of_camera, meets_all;
   bool passed_clear = false;
   MeanPassage* mean = nullptr;  // if any, nothing is left to chance
 };
@@ -129,6 +129,7 @@ bool passes_on_average(const Candidate& c, MeanPassage& mean) {
 void filter_surface(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->valid[0] != -1) return;
   auto& context = *reinterpret_cast<RayContext*>(arguments->context);
+  if (context.meets_all) return;
   const Candidate c = candidate(*arguments);
   if (context.mean != nullptr) {
     if (passes_on_average(c, *context.mean)) arguments->valid[0] = 0;
@@ -163,6 +164,7 @@ RayContext make_context(const Ray& ray, bool coherent) {
   context.alpha_seed = ray.alpha_seed;
   context.clear = ray.clear;
   context.of_camera = ray.of_camera;
+  context.meets_all = ray.meets_all;
   return context;
 }
 

@@ -27,6 +27,7 @@ struct Ray {
   float cone_width = 0, cone_spread = 0;
   ClearSurfaces clear = ClearSurfaces::kStop;
   bool of_camera = false;  // sees unlit surfaces, which all others pass, and passes backs that are hidden
+  bool meets_all = false;  // every triangle, whatever it lets through
 };
 
 enum class Passage : std::uint8_t {

@@ -40,24 +40,45 @@ float integrate(float cosine, float alpha) {
   return float(sum * 2 * M_PI / (kRings * kSectors));
 }
 
-AlbedoTable<float> make_table() {
-  AlbedoTable<float> table;
+using Table = AlbedoTable<float>;
+
+struct Tables {
+  Table albedo;
+  std::array<float, kSize> larger;  // [roughness], of two cosine-weighted directions, mean
+};
+
+// Of one roughness.
+float mean_of_larger(const std::array<float, kSize>& albedo) {
+  float sum = 0, total = 0;
+  for (int a = 0; a < kSize; ++a) {
+    for (int b = 0; b < kSize; ++b) {
+      const float weight = Table::weight_in_mean(a) * Table::weight_in_mean(b);
+      sum += weight * std::min(1.0F, std::max(albedo[a], albedo[b]));
+      total += weight;
+    }
+  }
+  return sum / total;
+}
+
+Tables make_tables() {
+  Tables tables;
   for (int r = 0; r < kSize; ++r) {
     const float roughness = float(r) / (kSize - 1);
     float sum = 0, total = 0;
     for (int c = 0; c < kSize; ++c) {
-      const float cosine = std::max(1e-3F, float(c) / (kSize - 1));
-      table.directional[r][c] = integrate(cosine, roughness * roughness);
-      sum += cosine * std::min(1.0F, table.directional[r][c]);
-      total += cosine;
+      const float cosine = std::max(1e-3F, float(c) / (kSize - 1)), weight = Table::weight_in_mean(c);
+      tables.albedo.directional[r][c] = integrate(cosine, roughness * roughness);
+      sum += weight * std::min(1.0F, tables.albedo.directional[r][c]);
+      total += weight;
     }
-    table.mean[r] = sum / total;
+    tables.albedo.mean[r] = sum / total;
+    tables.larger[r] = mean_of_larger(tables.albedo.directional[r]);
   }
-  return table;
+  return tables;
 }
 
-const AlbedoTable<float>& table() {
-  static const AlbedoTable<float> made = make_table();
+const Tables& tables() {
+  static const Tables made = make_tables();
   return made;
 }
 
@@ -72,8 +93,10 @@ float sheen_value(float cosine_h, float cosine_o, float cosine_i, float alpha) {
   return d / std::max(1e-6F, shadowing * 4 * cosine_o * cosine_i);
 }
 
-float sheen_albedo(float cosine, float alpha) { return table().at(cosine, alpha); }
+float sheen_albedo(float cosine, float alpha) { return tables().albedo.at(cosine, alpha); }
 
-float mean_sheen_albedo(float alpha) { return table().mean_at(alpha); }
+float mean_sheen_albedo(float alpha) { return tables().albedo.mean_at(alpha); }
+
+float mean_larger_sheen_albedo(float alpha) { return Table::between(tables().larger, alpha); }
 
 }  // namespace chiaro::renderer

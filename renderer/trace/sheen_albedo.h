@@ -12,4 +12,7 @@ float sheen_albedo(float cosine, float alpha);
 // Mean over cosine-weighted viewers.
 float mean_sheen_albedo(float alpha);
 
+// Mean of the larger of two cosine-weighted directions' albedos.
+float mean_larger_sheen_albedo(float alpha);
+
 }  // namespace chiaro::renderer

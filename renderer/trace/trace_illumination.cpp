@@ -1,5 +1,6 @@
 #include "renderer/trace/trace_illumination.h"
 
+#include <algorithm>
 #include <array>
 
 #include "renderer/trace/path_tracer.h"
@@ -42,6 +43,8 @@ struct Sampling {
   int batches;
 };
 
+using Vec3d = std::array<double, 3>;
+
 struct Estimate {
   Vec3f value, standard_error;
 };
@@ -51,14 +54,42 @@ void add_exact(const Sampling& sampling, const PathTracer::Receiver& at, std::ui
   if (!sampling.with_punctual) sampling.paths.add_punctual_illumination(at, sampler, light);
 }
 
-void add_batch(const Sampling& sampling, const PathTracer::Receiver& at, int batch, std::uint32_t stream,
-               PathLight& light) {
+Vec3d operator+(Vec3d a, Vec3f b) {
+  for (int c = 0; c < 3; ++c) a[std::size_t(c)] += double(b[c]);
+  return a;
+}
+
+Vec3f divided(const Vec3d& sum, double by) { return {float(sum[0] / by), float(sum[1] / by), float(sum[2] / by)}; }
+
+// Of very many paths, what floats would round away.
+struct Sums {
+  Vec3d all{};
+  std::vector<Vec3d> per_light;
+
+  // Moves what `light` has over.
+  void take(PathLight& light) {
+    all = all + (light.direct + light.indirect);
+    for (std::size_t l = 0; l < per_light.size(); ++l) per_light[l] = per_light[l] + light.per_light[l];
+    light.direct = light.indirect = {};
+    std::fill(light.per_light.begin(), light.per_light.end(), Vec3f{});
+  }
+};
+
+Sums sum_of_batch(const Sampling& sampling, const PathTracer::Receiver& at, int batch, std::uint32_t stream,
+                  std::size_t sources) {
+  constexpr int kInFloats = 64;  // paths
   const std::uint64_t seed = seed_of_batch(sampling.options.seed, std::uint64_t(batch) + 1);
-  for (int i = 0; i < sampling.samples_of(batch); ++i) {
+  PathLight light;
+  light.per_light.assign(sources, {});
+  Sums sums{{}, std::vector<Vec3d>(sources)};
+  const int samples = sampling.samples_of(batch);
+  for (int i = 0; i < samples; ++i) {
     sampling.control.stop_if_requested();  // a point may have millions
     Sampler sampler(seed, stream, std::uint32_t(i));
     sampling.paths.add_illumination(at, sampling.with_punctual, sampler, light);
+    if (i % kInFloats == kInFloats - 1 || i == samples - 1) sums.take(light);
   }
+  return sums;
 }
 
 // per_light: also what each source brings, all samples together; it has their number, or none.
@@ -76,14 +107,11 @@ Estimate estimate(const Sampling& sampling, const SurfaceSample& point, std::uin
   std::array<Vec3f, kBatches> means;
   Vec3f mean;
   for (int b = 0; b < batches; ++b) {
-    PathLight light;
-    light.per_light.assign(per_light.size(), {});
-    add_batch(sampling, at, b, stream, light);
-    means[b] = (light.direct + light.indirect) / float(sampling.samples_of(b));
+    const Sums sums = sum_of_batch(sampling, at, b, stream, per_light.size());
+    const double samples = sampling.samples_of(b);
+    means[b] = divided(sums.all, samples);
     mean += means[b] / float(batches);
-    for (std::size_t l = 0; l < per_light.size(); ++l) {
-      per_light[l] += light.per_light[l] / float(batches * sampling.samples_of(b));
-    }
+    for (std::size_t l = 0; l < per_light.size(); ++l) per_light[l] += divided(sums.per_light[l], batches * samples);
   }
   Vec3f error;
   for (int c = 0; c < 3; ++c) {

@@ -79,6 +79,20 @@ TEST_F(RefitByTrace, LeavesNoNegativeLight) {
   for (const Vec3f& light : refitted.traced.all.value) EXPECT_GE(std::min({light.x, light.y, light.z}), 0);
 }
 
+// One that a rule of colors lets shine is traced with the others.
+TEST_F(RefitByTrace, ChannelsThatComeOnAreTraced) {
+  LightEstimates known = known_lights(2), start = known;
+  IntensityRules rules;
+  rules.one_color = true;
+  for (std::size_t j = 0; j < 2; ++j) start[j].intensity = known[j].intensity = 2 + double(j);
+  start[0].intensity[2] = 0;
+  const Target target = corner_.target(known, -1);
+  const LightsByTrace refitted = refit(target, start, rules);
+  ASSERT_GT(refitted.lights[0].intensity[2], 1);
+  EXPECT_LT(relative_l2(refitted.traced.all.value, target.illumination, target.weight),
+            0.03 + std::abs(refitted.lights[0].intensity[2] / 2 - 1));
+}
+
 // Nothing is known of a channel that did not shine.
 TEST_F(RefitByTrace, DarkChannelsStayDark) {
   LightEstimates start = known_lights(1);

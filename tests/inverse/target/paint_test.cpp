@@ -407,6 +407,17 @@ TEST(PaintMirrored, PathAndMirrorImageAreOneStroke) {
   }
 }
 
+// Beyond the floor's edge.
+TEST(PaintMirrored, ImagesThatMissAllSurfacesAreTold) {
+  Stroke stroke = middle_dab(BrushMode::kAdd, BrushFalloff::kHard);
+  stroke.radius = 0.2F;
+  stroke.path = {{0.25F, 0, 0.5F}, {0.95F, 0, 0.5F}};
+  stroke.mirror = MirrorPlane{{1, 0, 0}, {1, 0, 0}};
+  const PaintResult result = paint_floor(stroke);
+  EXPECT_TRUE(result.far_points[0].empty());
+  EXPECT_EQ(result.far_images, (std::vector<std::vector<std::size_t>>{{0}}));
+}
+
 TEST(PaintAlongSurface, ARadiusBeyondAllThereIsTouchesAllThatHangsTogether) {
   for (const float radius : {10.0F, 1e3F, 1e9F}) {
     Stroke stroke = middle_dab(BrushMode::kSet, BrushFalloff::kHard);

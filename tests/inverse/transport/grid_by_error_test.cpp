@@ -50,6 +50,22 @@ TEST_F(GridByError, IsCoarseWhereNothingChanges) {
   EXPECT_EQ(grid.positions.size(), 64U);
 }
 
+// Two corners of the room, and nothing between: as fine a grid as they take alone, and no light elsewhere.
+TEST_F(GridByError, LooksOnlyWhereLightsMayStand) {
+  const std::vector<Box3f> corners{{{0.4F, 2.0F, 0.4F}, {1, 2.6F, 1}}, {{3, 2.0F, 3}, {3.6F, 2.6F, 3.6F}}};
+  const LightGrid grid =
+      choose_light_grid(tracer, receivers, {.region = kRegion, .parts = corners, .error = 0.03}, kSettings);
+  for (const Vec3f at : grid.positions) {
+    const Vec3f reach = 0.51F * grid.spacing;
+    EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
+                            [&](const Box3f& corner) {
+                              return Box3f{corner.min - reach, corner.max + reach}.contains(at);
+                            }))
+        << at.x << ' ' << at.y << ' ' << at.z;
+  }
+  EXPECT_GT(grid.positions.size(), 8U);
+}
+
 TEST_F(GridByError, SaysWhenNoGridIsFineEnough) {
   EXPECT_THROW(lights_for(1e-5, {.samples = 4, .bounces = 0, .seed = 3, .materials = "gltf"}), renderer::Error);
 }

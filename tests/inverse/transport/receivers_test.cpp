@@ -243,6 +243,20 @@ TEST(Receivers, OfAnotherSceneAreToldByTheirPlaces) {
   EXPECT_LT(fraction_on_surface(tracer, make_receivers(other, {})), 0.5);
 }
 
+// Cut-out surfaces are passed where they are cut out, and unlit skies by all rays but a camera's.
+TEST(Receivers, OfHolesAndOfUnlitSurfacesLieOnTheScene) {
+  Scene scene;
+  renderer::Material leaf = test::lambert({1, 1, 1}), sky = leaf;
+  leaf.alpha_mode = renderer::AlphaMode::kMask;
+  leaf.alpha = 0.4F;
+  sky.unlit = true;
+  test::add_mesh(scene, test::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), leaf, "card");
+  test::add_mesh(scene, test::room({9, 9, 9}), sky, "sky");
+  const RayTracer tracer(scene);
+  EXPECT_FALSE(tracer.intersect({{0.3F, 0.3F, 0.1F}, {0, 0, -1}, 0, 0.2F}));
+  EXPECT_EQ(fraction_on_surface(tracer, make_receivers(scene, {.max_edge = 0.5F})), 1);
+}
+
 TEST(Receivers, OfASceneFarFromTheOriginLieOnIt) {
   for (const float far : {1e4F, 1e5F, 1e6F}) {
     Scene scene;

@@ -311,6 +311,10 @@ TEST_F(TransportCacheFile, PixelsThatAreNoNumbersOrChannelsThatLackAreRefused) {
   expect_refused("a pixel that is not a number");
   save_edited([](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 2] = renderer::kInfinity; });
   expect_refused("an infinite pixel");
+  for (const float visibility : {std::nanf(""), renderer::kInfinity, -renderer::kInfinity}) {
+    save_edited([=](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 3] = visibility; });
+    expect_refused("a visibility that is not finite");
+  }
   save_edited([](renderer::ImageFile& file) {
     for (std::string& name : file.image.channel_names) name = name == "indirect.G" ? "other" : name;
   });

@@ -80,6 +80,28 @@ TEST(MipMaps, SixteenBitsStaySixteen) {
   EXPECT_EQ(texture.wide_mips[0][0], 200) << "on the straight part of the curve";
 }
 
+// A lit window of a dark town: 8 bits per channel would end in darkness.
+TEST(MipMaps, FewBrightTexelsAmongDarkOnesStay) {
+  constexpr int kSide = 128;
+  Texture texture{"", kSide, kSide, std::vector<std::uint8_t>(4 * kSide * kSide, 0)};
+  for (int c = 0; c < 4; ++c) texture.rgba[std::size_t(4 * (5 * kSide + 77) + c)] = 255;
+  make_mip_maps(texture, {.srgb = true, .wide = true});
+  EXPECT_TRUE(texture.rgba.empty());
+  ASSERT_EQ(texture.wide_mips.size(), 7U);
+  for (int k = 0; k <= 7; ++k) {
+    const auto level = mip_level<std::uint16_t>(texture, k);
+    double sum = 0;
+    for (int i = 0; i < level.width * level.height; ++i) {
+      sum += double(decode_table<std::uint16_t>(true)[level.texels[4 * i]]);
+    }
+    EXPECT_NEAR(sum / (level.width * level.height) * kSide * kSide, 1, 0.01) << "level " << k;
+  }
+}
+
+TEST(MipMaps, WideTexelsAreTheSame) {
+  for (int i = 0; i < 256; ++i) EXPECT_EQ(decode_table<std::uint16_t>(true)[257 * i], decode_table(true)[i]);
+}
+
 TEST(MipMaps, EncodingIsTheInverseOfDecoding) {
   for (int i = 0; i < 256; ++i) EXPECT_EQ(encode_srgb(decode_table(true)[i]), i);
   for (int i = 0; i < 65536; ++i) ASSERT_EQ(encode_wide_srgb(decode_table<std::uint16_t>(true)[i]), i);

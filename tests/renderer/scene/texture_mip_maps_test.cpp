@@ -44,6 +44,15 @@ TEST(TextureMipMaps, EveryWayToUseATextureHasItsOwn) {
   EXPECT_EQ(scene.textures.size(), 3U);
 }
 
+TEST(TextureMipMaps, EmissionIsWide) {
+  Material glowing = textured(AlphaMode::kOpaque);
+  glowing.emission_texture.texture = 0;
+  Scene scene = scene_of({glowing});
+  make_mip_maps(scene);
+  EXPECT_TRUE(is_wide(scene.textures[std::size_t(scene.materials[0].emission_texture.texture)]));
+  EXPECT_FALSE(is_wide(scene.textures[std::size_t(scene.materials[0].base_color_texture.texture)]));
+}
+
 TEST(TextureMipMaps, TexturesOfOneUseAreNotCopied) {
   Texture opaque = half_and_half();
   opaque.rgba[7] = 255;

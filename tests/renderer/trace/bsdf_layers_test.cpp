@@ -306,7 +306,7 @@ TEST(BsdfLayers, HemisphericalAlbedoIsWhatIsReflected) {
       const auto s = bsdf.sample(viewer, u, sampler.next_1d());
       if (s && s->direction.z > 0) mean += double(s->weight.x) / kCount;
     }
-    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.04) << name;
+    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.03) << name;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "renderer/trace/path_tracer.h"
 #include "renderer/trace/render.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/environments.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -173,6 +174,16 @@ TEST(ClearSurfaces, AnAbsorbingBallIsAsDarkAsItsDiameterMakesIt) {
   add_mesh(scene, test::sphere({0, 0, 0}, 9, 24, true), test::lambert({0, 0, 0}, {1, 1, 1}), "sky");
   const double passed = (1 - reflected) * (1 - reflected) * through / (1 - reflected * through);
   EXPECT_NEAR(frame_mean(scene, {0, 0, 4}, 256), reflected + passed, 0.01);
+}
+
+// Deep water without a ground: of the sky its surface shows the reflection alone, smooth or not, however it is sampled.
+TEST(ClearSurfaces, NothingComesBackOutOfWaterWithoutAGround) {
+  const Lights sky{test::environment(test::environment_map(2, 1, [](int, int) { return Vec3f{1, 1, 1}; }))};
+  for (const float roughness : {0.0F, 0.2F}) {
+    Scene scene;
+    add_mesh(scene, rectangle({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}), glass(true, roughness, {0.7F, 0, 0}), "water");
+    EXPECT_NEAR(frame_mean(scene, {0, 0, 4}, 1024, sky), 0.04, 0.002) << roughness;
+  }
 }
 
 // What absorbs is the way inside, on whichever side of the frosted boundary a light is.

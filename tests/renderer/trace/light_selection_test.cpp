@@ -29,9 +29,20 @@ Lights mixed_lights(std::size_t count) {
   return lights;
 }
 
+// A dome.
+Lights directional_lights(std::size_t count) {
+  Lights lights;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Sampler sampler(1, 1, i);
+    lights.emplace_back(DirectionalLight{"", uniform_direction(sampler.next_2d()), {0.1F, sampler.next_1d(), 0}});
+  }
+  return lights;
+}
+
 struct Count {
   const char* name;
   std::size_t lights;
+  bool distant = false;  // all of them
 };
 
 // In the box of the lights, what shadow rays may have learnt: some lights are seen here and there.
@@ -48,7 +59,9 @@ void teach(const Lights& lights, LightVisibility& visibility) {
 
 class LightSelectionOf : public testing::TestWithParam<Count> {
  protected:
-  LightSelectionOf() : lights(mixed_lights(GetParam().lights)), visibility({{0, 0, 0}, {6, 6, 6}}, lights.size()) {
+  LightSelectionOf()
+      : lights(GetParam().distant ? directional_lights(GetParam().lights) : mixed_lights(GetParam().lights)),
+        visibility({{0, 0, 0}, {6, 6, 6}}, lights.size()) {
     teach(lights, visibility);
   }
   Lights lights;
@@ -93,7 +106,8 @@ TEST_P(LightSelectionOf, TheExpectationIsTheSumOverAllLights) {
 
 INSTANTIATE_TEST_SUITE_P(Counts, LightSelectionOf,
                          testing::Values(Count{"One", 1}, Count{"Few", 4}, Count{"Eight", 8}, Count{"Many", 40},
-                                         Count{"TwoHundred", 200}, Count{"Thousand", 1000}),
+                                         Count{"TwoHundred", 200}, Count{"Thousand", 1000}, Count{"Dome", 200, true},
+                                         Count{"FineDome", 310, true}),
                          test::kByName);
 
 TEST(LightSelection, WeighsByTheIrradiance) {

@@ -58,5 +58,17 @@ TEST(LightVisibility, EveryPointHasAPart) {
   }
 }
 
+// 3 MB of factors at most, of flat and of long scenes, too.
+TEST(LightVisibility, TakesLittleMemory) {
+  for (const Vec3f extent : {Vec3f{1000, 1000, 10}, {1000, 1, 1}, {1, 1, 1}, {1e6F, 1e-3F, 0}, {3, 0, 2}}) {
+    for (const std::size_t lights : {8, 256}) {
+      const LightVisibility visibility({{0, 0, 0}, extent}, lights);
+      const std::size_t parts = visibility.part_of(extent, {0, 0, -1}) + 1;  // the last
+      EXPECT_LE(parts * lights, 750'000U) << extent.x << " " << lights;
+      EXPECT_GE(parts * lights, 50'000U) << extent.x << " " << lights;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace chiaro::renderer
