@@ -25,9 +25,10 @@ std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std:
 // Of each sample the gather point that it sees, if any.
 using Cells = std::vector<std::optional<std::uint32_t>>;
 
-Cells find_cells(const std::vector<SurfaceSample>& all, const NearestGatherPoint& nearest) {
+Cells find_cells(const std::vector<SurfaceSample>& all, const NearestGatherPoint& nearest,
+                 const renderer::Control& control) {
   Cells cells(all.size());
-  renderer::parallel_for(all.size(), [&](std::size_t i) { cells[i] = nearest.find_seen(all[i]); });
+  renderer::parallel_for(all.size(), "", control, [&](std::size_t i) { cells[i] = nearest.find_seen(all[i]); });
   return cells;
 }
 
@@ -45,9 +46,9 @@ std::vector<SurfaceSample> choose_hidden(const std::vector<SurfaceSample>& all, 
 // to, and that see one, it stays.
 void find_cells_again(const std::vector<SurfaceSample>& all, const std::vector<SurfaceSample>& points,
                       const std::vector<SurfaceSample>& more, const NearestGatherPoint& nearest, float spacing,
-                      Cells& cells) {
+                      const renderer::Control& control, Cells& cells) {
   const SampleTree among_more(more, spacing);
-  renderer::parallel_for(all.size(), [&](std::size_t i) {
+  renderer::parallel_for(all.size(), "", control, [&](std::size_t i) {
     std::uint32_t found = 0;
     among_more.find_nearest(all[i], {&found, 1});
     const auto distance = [&](const SurfaceSample& to) { return among_more.squared_distance(all[i], to); };
@@ -79,17 +80,18 @@ void fill_cells(GatherOperator& gather, const std::vector<SurfaceSample>& all, c
 }  // namespace
 
 void place_gather_points(GatherOperator& gather, const renderer::RayTracer& tracer,
-                         const std::vector<SurfaceSample>& all, std::size_t wanted) {
+                         const std::vector<SurfaceSample>& all, std::size_t wanted, const renderer::Control& control) {
   gather.points = every_nth(all, wanted);
   if (gather.points.empty()) return;
   const float spacing = typical_spacing(tracer.bounds(), gather.points.size());
   gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
-  Cells cells = find_cells(all, *gather.nearest);
+  const renderer::Control quiet = control.without_progress();
+  Cells cells = find_cells(all, *gather.nearest, quiet);
   const std::vector<SurfaceSample> more = choose_hidden(all, cells, gather.points.size());
   if (!more.empty()) {
     gather.points.insert(gather.points.end(), more.begin(), more.end());
     gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
-    find_cells_again(all, gather.points, more, *gather.nearest, spacing, cells);
+    find_cells_again(all, gather.points, more, *gather.nearest, spacing, quiet, cells);
   }
   fill_cells(gather, all, cells);
 }

@@ -56,9 +56,9 @@ std::vector<SurfaceSample> trace_gather_path(const RayTracer& tracer, SurfaceSam
 
 // Surface points by importance: where paths from the receivers go.
 std::vector<SurfaceSample> trace_gather_paths(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
-                                              std::size_t count, std::uint64_t seed) {
+                                              std::size_t count, std::uint64_t seed, const renderer::Control& control) {
   std::vector<std::vector<SurfaceSample>> paths(count);
-  renderer::parallel_for(count, [&](std::size_t i) {
+  renderer::parallel_for(count, "", control.without_progress(), [&](std::size_t i) {
     const std::size_t receiver = i * receivers.size() / count;
     paths[i] = trace_gather_path(tracer, receivers[receiver], Sampler(seed, 0, std::uint32_t(i)));
   });
@@ -213,7 +213,8 @@ GatherOperator make_gather_points(const RayTracer& tracer, std::span<const Surfa
   const std::size_t wanted = std::size_t(options.samples) * options.points_per_sample;
   place_gather_points(
       gather, tracer,
-      trace_gather_paths(tracer, receivers, std::size_t(options.paths_per_point) * wanted, options.seed + 1), wanted);
+      trace_gather_paths(tracer, receivers, std::size_t(options.paths_per_point) * wanted, options.seed + 1, control),
+      wanted, control);
   if (gather.points.empty()) return gather;
   gather.interreflection =
       make_interreflection(trace_rows(tracer, gather.points, all_of(gather.points.size()), options.rays_per_point,

@@ -44,7 +44,8 @@ class InterpolationTest {
                                      {.samples = settings.samples,
                                       .points_per_sample = kPointsPerSample,
                                       .bounces = settings.bounces,
-                                      .seed = settings.seed})),
+                                      .seed = settings.seed},
+                                     control.without_progress())),
         control_(control.without_progress()) {}
 
   // What a cache has of one light.
