@@ -7,10 +7,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 read -ra presets <<<"${PRESET:-release fuzz}"
 
 bash cmake/install_dependencies.sh chromium clang libclang-rt-14-dev  # Chromium opens the report's page
+test_cases=  # as release has compiled them, for fuzz after it
 for preset in "${presets[@]}"; do
   echo "chiaro: building preset $preset"
-  cmake --preset "$preset" >/dev/null
+  options=()
+  [ "$preset" != fuzz ] || options=(-D CHIARO_TEST_CASES_OF="$test_cases")
+  cmake --preset "$preset" "${options[@]}" >/dev/null
   cmake --build --preset "$preset"
   echo "chiaro: testing preset $preset"
   ctest --preset "$preset" --parallel "$(nproc)"
+  [ "$preset" != release ] || test_cases=$PWD/build/release
 done

@@ -106,7 +106,7 @@ std::optional<LightEstimates> with_further_light(const renderer::RayTracer& trac
   if (lights.empty()) return {};
   const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
   const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
-  const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows)};
+  const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows), all.stop};
   Candidate now{lights, rows_of(indirect, rows), indirect};
   std::vector<Candidate> candidates = worth_trying(some, now, further);
   if (candidates.empty()) return {};
@@ -120,15 +120,17 @@ std::optional<LightEstimates> with_further_light(const renderer::RayTracer& trac
   now.descend_by_some(some);
   const Column led = brought_by(now);
   std::erase_if(candidates, [&](Candidate& more) {
+    if (all.stops()) return true;
     more.descend_by_some(some);
     return !all.explains_more(brought_by(more), led, kGain, kSignificant);
   });
-  if (candidates.empty()) return {};
+  if (candidates.empty() || all.stops()) return {};
   now.descend_by_all(all);
   const Column again = brought_by(now);
   Column least = relative_error(all.observations, again) < relative_error(all.observations, before) ? again : before;
   std::optional<LightEstimates> best;
   for (Candidate& more : candidates) {
+    if (all.stops()) return {};
     more.descend_by_all(all);
     Column brought = brought_by(more);
     if (!all.explains_more(brought, least, kGain, kSignificant)) continue;

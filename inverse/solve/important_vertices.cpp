@@ -16,6 +16,7 @@ namespace {
 constexpr int kGeometryRays = 32;
 constexpr int kNeighbourRings = 3;
 constexpr double kLeastDensity = 0.02;     // so that no painted receiver is out of reach
+constexpr std::size_t kEnoughLit = 200;    // of those drawn, or a quarter
 constexpr double kLargestQuantile = 0.99;  // counts as 1: a few slivers must not make all else look flat
 
 // Harmonic mean of the distances to what a receiver sees (3.3); at most `diagonal`.
@@ -103,6 +104,22 @@ std::vector<std::size_t> with_neighbours(const Receivers& receivers, const std::
   return {grown.begin(), grown.end()};
 }
 
+// Where a draw by these densities would hardly find a receiver that is lit, as of a pool of light in a large scene, the
+// lit ones become so likely that it finds some.
+void make_lit_likely(const Target& target, std::size_t count, std::vector<double>& density) {
+  const double wanted = double(std::min(kEnoughLit, count / 4));
+  const auto is_lit = [&](std::size_t i) { return max_component(target.illumination[i]) > 0; };
+  double lit = 0, unlit = 0, number_of_lit = 0;
+  for (std::size_t i = 0; i < density.size(); ++i) {
+    (is_lit(i) ? lit : unlit) += density[i];
+    number_of_lit += is_lit(i) && density[i] > 0 ? 1 : 0;
+  }
+  const double share = std::min(wanted, number_of_lit) / double(std::max<std::size_t>(1, count));
+  if (!(lit > 0) || !(unlit > 0) || lit / (lit + unlit) >= share) return;
+  const double factor = share / (1 - share) * unlit / lit;
+  for (std::size_t i = 0; i < density.size(); ++i) density[i] *= is_lit(i) ? factor : 1;
+}
+
 }  // namespace
 
 Importance choose_important_vertices(const renderer::RayTracer& tracer, const Target& target,
@@ -132,6 +149,7 @@ Importance choose_again(Importance importance, const Target& target, std::size_t
   std::erase_if(importance.chosen, [&](std::size_t i) { return !(target.weight[i] > 0); });
   for (const std::size_t i : importance.chosen) density[i] = 0;
   const std::size_t left = count - importance.chosen.size();
+  make_lit_likely(target, left, density);
   const auto drawn = numerics::sample_without_replacement(density, left, seed);
   const std::vector<double> probability = numerics::inclusion_probabilities(density, left);
   importance.chosen.insert(importance.chosen.end(), drawn.begin(), drawn.end());

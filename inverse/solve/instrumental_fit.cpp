@@ -189,9 +189,10 @@ Column unity_indirect(const Column& traced, const Column& direct, const Eigen::A
 }
 
 void descend_with_instruments(const LightResponse& response, const Observations& observations,
-                              const std::vector<Column>& indirect, LightEstimates& lights) {
+                              const std::vector<Column>& indirect, LightEstimates& lights,
+                              const std::function<bool()>& stop) {
   Stepper stepper(response, lights.size());
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kSteps && !(stop && stop()); ++k) {
     const std::vector<ColumnWithGradient> direct = evaluate_columns_with_gradient(response, lights);
     const Column residual = residual_of(observations, direct, indirect, lights);
     const Eigen::VectorXd weight = robust_sqrt_weight(observations, residual, kOutlier);

@@ -5,6 +5,8 @@
 // Sources: Reiersøl, Confluence Analysis by Means of Instrumental Sets of Variables, 1945; Holland, Welsch, Robust
 // Regression Using Iteratively Reweighted Least-Squares, 1977 (weights after Geman and McClure, 1987).
 
+#include <functional>
+
 #include "inverse/solve/light_intervals.h"
 
 namespace chiaro::inverse {
@@ -17,9 +19,11 @@ Column unity_indirect(const Column& traced, const Column& direct, const Eigen::A
 
 // Gauss–Newton steps of positions and intensities, visibility and indirect light held during each. Receivers whose
 // shadow is not where the target has it say nothing about which way to go, and would pull the lights aside: their
-// residuals are far beyond those of all others, and weigh little (iteratively reweighted least squares).
+// residuals are far beyond those of all others, and weigh little (iteratively reweighted least squares). stop: if any,
+// whether to end now.
 void descend_with_instruments(const LightResponse& response, const Observations& observations,
-                              const std::vector<Column>& indirect, LightEstimates& lights);
+                              const std::vector<Column>& indirect, LightEstimates& lights,
+                              const std::function<bool()>& stop = {});
 
 // The intensities alone, none negative, with weights by which residuals cannot take off the mean: noise is not
 // symmetric. Where it is known, only what is far beyond it loses weight, and otherwise fireflies do.

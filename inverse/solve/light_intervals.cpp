@@ -14,6 +14,7 @@ namespace {
 constexpr int kParameters = 6;          // of a light: x, y, z, red, green, blue
 constexpr double kOpposed = 0.9;        // correlation, and less than its negative: one makes good what the other lacks
 constexpr double kDarkChannel = 0.01;   // of the light's brightest
+constexpr double kWhollySeen = 0.999;   // of a parameter, by the directions in which instruments tell something
 constexpr double kUnknown = 1e-10;      // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
 constexpr double kLeastOutside = 0.01;  // of what a receiver leaves, as far as the others decide it
 
@@ -61,7 +62,7 @@ Inverse invert(const FitAtRest& fit) {
     result.matrix = basis * (basis.transpose() * product * basis).inverse() * basis.transpose();
   }
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    result.known.push_back(scale[k] > 0 && eigen.eigenvectors()(k, seen).squaredNorm() >= 0.5);
+    result.known.push_back(scale[k] > 0 && eigen.eigenvectors()(k, seen).squaredNorm() >= kWhollySeen);
   }
   return result;
 }

@@ -86,15 +86,16 @@ bool remove_some(const SettlingBench& bench, const CarryAlong& carry_along, cons
   const std::vector<std::size_t> doubtful = doubtful_ones(bench, free, intervals);
   Tries tries(bench, carry_along, free);
   if (doubtful.size() > 1 && tries.go_without(doubtful)) return true;
-  return std::any_of(doubtful.begin(), doubtful.end(), [&](std::size_t j) { return tries.go_without({j}); }) ||
-         tries.go_carried_along();
+  const bool went = std::any_of(doubtful.begin(), doubtful.end(),
+                                [&](std::size_t j) { return !bench.stops() && tries.go_without({j}); });
+  return went || (!bench.stops() && tries.go_carried_along());
 }
 
 }  // namespace
 
 LightIntervals remove_needless(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free) {
   LightIntervals intervals = bench.intervals(free.indirect, free.now);
-  while (free.now.size() > 1 && remove_some(bench, carry_along, intervals, free)) {
+  while (free.now.size() > 1 && !bench.stops() && remove_some(bench, carry_along, intervals, free)) {
     intervals = bench.intervals(free.indirect, free.now);
   }
   return intervals;

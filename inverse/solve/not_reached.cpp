@@ -112,9 +112,14 @@ bool falls_still(const SolveResult& result, std::size_t count) {
   return curve.back().relative_l2 < kStillFalls * curve[curve.size() - 2].relative_l2;
 }
 
+// Of a box that it is in. Where a box has no extent, as one of lamps in a plane, nobody wanted them to go.
 bool at_border_of(const renderer::Box3f& box, Vec3f position) {
   const Vec3f inside = min(position - box.min, box.max - position);
-  return box.contains(position) && double(min_component(inside)) <= kAtBorder * double(box.diagonal());
+  const double near = kAtBorder * double(box.diagonal());
+  for (int a = 0; a < 3; ++a) {
+    if (box.extent()[a] > 0 && double(inside[a]) <= near) return true;
+  }
+  return false;
 }
 
 // Or it came so far that it might have gone farther.
@@ -124,8 +129,9 @@ bool at_border(const SolveProblem& problem, const SolveResult& result, const Fou
   if (result.lights_may_be_farther && !default_region(problem.tracer).contains(light->position)) return true;
   std::vector<renderer::Box3f> boxes = problem.places.boxes;
   if (boxes.empty() && problem.places.mounts.empty()) boxes = {result.region};
-  return std::any_of(boxes.begin(), boxes.end(),
-                     [&](const renderer::Box3f& box) { return at_border_of(box, light->position); });
+  std::erase_if(boxes, [&](const renderer::Box3f& box) { return !box.contains(light->position); });
+  return !boxes.empty() && std::all_of(boxes.begin(), boxes.end(),
+                                       [&](const renderer::Box3f& box) { return at_border_of(box, light->position); });
 }
 
 bool any_at_border(const SolveProblem& problem, const SolveResult& result) {
@@ -173,6 +179,7 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
   if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
     return fmt::format("more lights may come closer: {} {} allowed", most, most == 1 ? "was" : "were");
   }
+  if (result.termination == kEarlierRefined) return "a solve without --from looks for further lights";
   if (options.method == SolveMethod::kThesis) return "the joint method, or another threshold, may come closer";
   if (any_at_limit(problem, result)) return kWithoutConstraints;
   if (any_at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";

@@ -311,6 +311,7 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
       options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
   const char* const termination = found.out_of_time                                                ? kTimeLimit
                                   : options.exact_lights > 0                                       ? kAsManyAsAskedFor
+                                  : !search.options.earlier.empty()                                ? kEarlierRefined
                                   : !explained && lights.size() == std::size_t(options.max_lights) ? kAsManyAsAllowed
                                   : another_explains_more(error_curve, lights.size())
                                       ? "further lights explain little more"

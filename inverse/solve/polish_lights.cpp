@@ -38,7 +38,8 @@ PolishedLights polish_lights(const ExactIndirect& exact, const LightResponse& re
   }
   polished.error = relative_error(observations, illumination_of(response, polished.lights));
   if (polished.error <= kExplained * observations.noise || clock.out_of_time()) return polished;
-  SettledLights settled = settle_positions(response, observations, polished.lights, kSettle * diagonal);
+  SettledLights settled = settle_positions(response, observations, polished.lights, kSettle * diagonal,
+                                           [&] { return clock.out_of_time(); });
   polished.lights = std::move(settled.lights);
   polished.error = settled.error;
   return polished;

@@ -249,7 +249,7 @@ class Settler {
       by_trace.settling_seconds = seconds_;
       if (any_share_a_place(lights, with_.near)) return by_trace;
       FreeLights free = free_lights(with_, lights, by_trace.traced);
-      const SettlingBench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced)};
+      const SettlingBench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced), stop_};
       if (any_hidden(bench, free)) return by_trace;
       descend(bench, free);
       const CarryAlong carried_along = [&](FreeLights& now) { carry_along_with(bench, first, lights, now); };
@@ -290,7 +290,7 @@ class Settler {
     for (int draft = 0; draft < kDrafts && !out_of_time(); ++draft) {
       FreshTrace traced = trace_first_part_of(lights);
       FreeLights free = free_lights(on_the_way_, lights, traced);
-      const SettlingBench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced)};
+      const SettlingBench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced), stop_};
       const bool hidden = any_hidden(bench, free);
       if (!hidden) bench.descend(free.indirect, free.now);
       const bool rests = hidden || at_rest(bench, free, on_the_way_.near);
@@ -334,7 +334,8 @@ class Settler {
 
   // True: one was missing, and there is one more, on its way.
   bool add_further(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
-    const bool may_add = options_.exact_lights == 0 && int(lights.size()) < options_.max_lights;
+    const bool may_add =
+        options_.exact_lights == 0 && options_.earlier.empty() && int(lights.size()) < options_.max_lights;
     if (!may_add || added_lights_ == kMostFurther || out_of_time()) return false;
     const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, further_);
     if (!more) return false;
@@ -361,6 +362,7 @@ class Settler {
   const Eigen::VectorXd brightness_;  // of each, under the lights as they were found
   const Settling with_, on_the_way_;
   const FurtherLights further_;
+  const std::function<bool()> stop_ = [this] { return out_of_time() || control_.stop_requested(); };
   std::optional<FreshTrace> first_part_{};  // of the trace where the lights are in the end; absent: they moved since
   std::optional<SquaredError> as_found_{};  // of the lights as they were found, by a first part
   double seconds_ = 0;                      // without the traces

@@ -20,11 +20,12 @@ class Settling {
         best_{start, relative_error(observations, total_illumination(columns_, start, observations.wanted.rows())), 0} {
   }
 
-  void settle(std::size_t moved, double step) {
+  void settle(std::size_t moved, double step, const std::function<bool()>& stop) {
     const Box3f region = response_.grid().region;
     numerics::NelderMeadOptions options;
     options.max_evaluations = kEvaluations;
     options.restart = false;
+    options.stop = stop;
     numerics::nelder_mead([&](const Eigen::VectorXd& position) { return error_with(moved, position); },
                           best_.lights[moved].position, Eigen::VectorXd::Constant(3, step), to_eigen(region.min),
                           to_eigen(region.max), options);
@@ -63,10 +64,13 @@ class Settling {
 }  // namespace
 
 SettledLights settle_positions(const LightResponse& response, const Observations& observations,
-                               const LightEstimates& start, double step) {
+                               const LightEstimates& start, double step, const std::function<bool()>& stop) {
   Settling settling(response, observations, start);
   for (int cycle = 0; cycle < kCycles; ++cycle) {
-    for (std::size_t j = 0; j < start.size(); ++j) settling.settle(j, step);
+    for (std::size_t j = 0; j < start.size(); ++j) {
+      if (stop && stop()) return settling.best();
+      settling.settle(j, step, stop);
+    }
   }
   return settling.best();
 }

@@ -16,7 +16,7 @@ Eigen::VectorXd comparable_residuals(const Observations& observations, const Col
 }  // namespace
 
 void SettlingBench::descend(const std::vector<Column>& indirect, LightEstimates& lights) const {
-  descend_with_instruments(response, observations, indirect, lights);
+  descend_with_instruments(response, observations, indirect, lights, stop);
   fit_intensities_with_instruments(response, observations, indirect, lights);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "inverse/solve/light_intervals.h"
 
 namespace chiaro::inverse {
@@ -9,7 +11,9 @@ namespace chiaro::inverse {
 struct SettlingBench {
   const LightResponse& response;  // of direct light alone
   Observations observations;
+  std::function<bool()> stop = {};  // if any: whether to end now
 
+  bool stops() const { return stop && stop(); }
   // To where they fit best, and as bright as they do (instrumental_fit.h).
   void descend(const std::vector<Column>& indirect, LightEstimates& lights) const;
   Column illumination(const std::vector<Column>& indirect, const LightEstimates& lights) const;

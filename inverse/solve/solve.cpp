@@ -296,8 +296,15 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
       {options.important_vertices, options.geometry_weight, options.illumination_weight, seed}));
   if (!(basis->published.wanted.array() > 0).any())
     no_light_possible(problem, "the target is nowhere brighter than what shines already");
-  const std::optional<Box3f> first = first_region(problem, options);
-  auto found = search(basis, problem, first, nullptr, clock, result);
+  std::optional<Box3f> first = first_region(problem, options);
+  std::unique_ptr<RegionSearch> found;
+  try {
+    found = search(basis, problem, first, nullptr, clock, result);
+  } catch (const renderer::Error&) {
+    if (!first) throw;
+    first.reset();  // lights may stand nowhere around what is lit
+    found = search(basis, problem, first, nullptr, clock, result);
+  }
   if (first && options.earlier.empty() && !found->comes_close() && !clock.out_of_time()) {
     auto everywhere = search_region(basis, problem, std::nullopt, found.get(), found.get(), clock);
     if (everywhere) add_seconds_of(*everywhere, result);
@@ -360,7 +367,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.stages = clock.stages();
   if (!options.report_folder.empty()) {
     write_report({problem.tracer.scene(), problem.target, importance, searched->transport.cache.grid,
-                  searched->distribution, searched->clusters, searched->tree, optimum.cut, by_trace.lights, result},
+                  searched->distribution, searched->clusters, searched->tree, optimum.cut, lights, result},
                  options.report_folder);
     clock.finish("report", {});
     result.stages = clock.stages();

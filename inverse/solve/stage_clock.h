@@ -14,6 +14,7 @@ inline constexpr const char* kTimeLimit = "time limit";                         
 inline constexpr const char* kAsManyAsAskedFor = "as many lights as asked for";  // … too
 inline constexpr const char* kAsManyAsAllowed = "as many lights as allowed";
 inline constexpr const char* kNoFurtherExplainsMore = "no further light explains more";
+inline constexpr const char* kEarlierRefined = "the earlier lights are refined";
 
 using StageFigures = std::vector<std::pair<std::string, double>>;
 

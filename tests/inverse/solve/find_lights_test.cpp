@@ -222,6 +222,17 @@ TEST(SettlePositions, GoesOnWhereDescentStopsAndIsNeverWorse) {
   EXPECT_LE(farthest_from(known, positions_of(again.lights)), 1e-6);
 }
 
+TEST(SettlePositions, EndsWhenItIsToldTo) {
+  const LightEstimates known = known_lights(2);
+  const DirectProblem problem(known);
+  int asked = 0;
+  const SettledLights settled =
+      settle_positions(problem.response(), problem.observations(), known, 0.05, [&] { return ++asked > 10; });
+  EXPECT_LT(settled.evaluations, 60);
+  EXPECT_EQ(settle_positions(problem.response(), problem.observations(), known, 0.05, [] { return true; }).evaluations,
+            0);
+}
+
 TEST(Insertion, FitsTheIntensityThatExplainsMost) {
   const LightEstimates known = known_lights(1);
   const DirectProblem problem(known);

@@ -43,6 +43,30 @@ TEST_F(ImportantVertices, AreNeverThoseOfNoWeight) {
   }
 }
 
+// A hundredth of all is lit: as many of them are drawn as are worth it, and stand for as many as there are.
+TEST_F(ImportantVertices, PoolsOfLightAreNotMissed) {
+  Target target = target_;
+  const auto is_lit = [](std::size_t i) { return i % 100 == 7; };
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+    target.illumination[i] = is_lit(i) ? Vec3f{1, 1, 1} : Vec3f{};
+    target.weight[i] = is_lit(i) ? 1 : 0.05F;
+  }
+  double stand_for = 0, all = 0;
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const Importance importance = choose(target, 100, std::uint64_t(seed));
+    int lit = 0;
+    for (std::size_t k = 0; k < importance.chosen.size(); ++k) {
+      if (!is_lit(importance.chosen[k])) continue;
+      ++lit;
+      stand_for += 1 / importance.probability[k];
+    }
+    EXPECT_GE(lit, 10) << seed;
+  }
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) all += is_lit(i) ? kSeeds : 0;
+  EXPECT_NEAR(stand_for / all, 1, 0.15);
+}
+
 TEST_F(ImportantVertices, DependOnTheirSeedAndNothingElse) {
   const auto first = choose(target_, 300).chosen;
   const renderer::ThreadLimit limit(1);

@@ -73,6 +73,21 @@ TEST(LightIntervals, AreInfiniteWhereNothingIsKnown) {
   EXPECT_TRUE(light_intervals(problem.response(), problem.observations(), {}).lights.empty());
 }
 
+// Of two in one place the sum alone is known, as exactly as one light would be: of each by itself nothing.
+TEST(LightIntervals, OfTwoLightsInOnePlaceNothingIsKnown) {
+  LightEstimates lights = known_lights(1);
+  lights[0].intensity /= 2;
+  lights.push_back(lights[0]);
+  const DirectProblem problem(lights);
+  const LightIntervals intervals =
+      light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), lights);
+  for (const LightInterval& interval : intervals.lights) {
+    EXPECT_TRUE(std::isinf(interval.position.minCoeff()));
+    EXPECT_TRUE(std::isinf(interval.intensity.minCoeff()));
+  }
+  EXPECT_EQ(intervals.confounded.size(), 1U);
+}
+
 TEST(LightIntervals, LightsSideBySideAreNotToldApart) {
   LightEstimates lights = known_lights(2);
   const DirectProblem apart(lights);

@@ -79,6 +79,27 @@ TEST(NotReached, NoiseIsNoPlace) {
   EXPECT_FALSE(places_not_reached(target, noisy, 0.01).empty());
 }
 
+// Where users have lights in a plane, or in two boxes side by side, they are not at a border for that.
+TEST(NotReached, LightsAtNoBorderKeepTheirIntervals) {
+  const PaintedCorner corner;
+  const Target target = corner.target(known_lights(1), 0);
+  SolveProblem problem{corner.tracer(), target, {}, {}, tests::bake_settings(0), {}};
+  SolveResult result;
+  result.not_reached.resize(1);
+  result.lights.push_back({renderer::PointLight{"", {2, 2, 2}, {1, 1, 1}}, 1, {0.1F, 0.1F, 0.1F}, {0.1F, 0.1F, 0.1F}});
+  const auto knows = [&](std::vector<renderer::Box3f> boxes) {
+    problem.places.boxes = std::move(boxes);
+    SolveResult left = result;
+    leave_unknown_at_border(problem, left);
+    return is_finite(left.lights[0].position_interval);
+  };
+  EXPECT_TRUE(knows({{{1, 1, 1}, {3, 3, 3}}}));
+  EXPECT_TRUE(knows({{{1, 2, 1}, {3, 2, 3}}}));
+  EXPECT_TRUE(knows({{{1, 1, 1}, {2, 3, 3}}, {{1.5F, 1, 1}, {3, 3, 3}}}));
+  EXPECT_FALSE(knows({{{2, 1, 1}, {3, 3, 3}}}));
+  EXPECT_FALSE(knows({{{1, 2, 2}, {3, 2, 3}}}));
+}
+
 // A bright patch on a wall and nothing else, and lights that may stand on the other side of the room alone.
 TEST(NotReached, SolvesSayWhatMayHelp) {
   const PaintedCorner corner;

@@ -439,6 +439,25 @@ TEST(Solve, FindsALampOutsideAWindow) {
   EXPECT_LT(result.relative_l2, 0.05);
 }
 
+// A statue in a hall is lit, and lights may not stand as close to it as they are sought at first.
+TEST(Solve, LightsThatMayNotStandAroundWhatIsLitAreSoughtFartherAway) {
+  renderer::Scene hall;
+  test::add_mesh(hall, test::room({40, 9, 40}), test::lambert({0.5F, 0.5F, 0.5F}), "hall");
+  renderer::Mesh statue = test::sphere({20, 1, 20}, 0.2F, 12);
+  test::add_mesh(hall, std::move(statue), test::lambert({0.5F, 0.5F, 0.5F}), "statue");
+  const PaintedCorner corner(3, std::move(hall));
+  const LightEstimates known{{{22, 3, 21}, {60, 50, 40}}};
+  Target target = corner.target(known, 0);
+  for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+    if (length(target.receivers.positions[i] - Vec3f{20, 1, 20}) > 0.3F) target.weight[i] = 0;
+  }
+  SolveProblem problem = problem_of(corner, target, 0);
+  problem.places.surface_distance = 1.5;
+  SolveOptions one = quick();
+  one.max_lights = 1;
+  EXPECT_EQ(solve(problem, one).lights.size(), 1U);
+}
+
 // What it shines is a small part of all light, and of what is wanted of it all.
 TEST(Solve, ALightBesideAnOpenSceneIsFoundBesideBrightOnesThatStay) {
   const PaintedCorner open(0.5F, test::plane_scene({0.5F, 0.5F, 0.5F}));
