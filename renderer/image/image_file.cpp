@@ -90,10 +90,25 @@ struct OpenImage {
   std::unique_ptr<OIIO::Filesystem::IOMemReader> reader{};
   std::unique_ptr<OIIO::ImageInput> input{};
   std::optional<RadianceHeader> radiance{};  // of a Radiance picture
+  int part = 0;                              // of an OpenEXR file of several
 };
 
 bool has_format(const OIIO::ImageInput& input, const char* format) {
   return std::strcmp(input.format_name(), format) == 0;
+}
+
+bool has_colors(const OIIO::ImageSpec& spec) {
+  return spec.channelindex("R") >= 0 && spec.channelindex("G") >= 0 && spec.channelindex("B") >= 0;
+}
+
+// The first part with colours; where none has, the first: depth may come before them.
+int choose_part(OIIO::ImageInput& input) {
+  if (!has_format(input, "openexr") || has_colors(input.spec())) return 0;
+  for (int part = 1; input.seek_subimage(part, 0); ++part) {
+    if (has_colors(input.spec())) return part;
+  }
+  input.seek_subimage(0, 0);
+  return 0;
 }
 
 // Their header is known to be right before OpenImageIO sees it, and so are the bytes.
@@ -121,6 +136,7 @@ OpenImage open(const std::filesystem::path& path) {
     const std::string reason = first_line(OIIO::geterror());
     throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), "an image"});
   }
+  image.part = choose_part(*image.input);
   if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);
   return image;
 }
@@ -157,13 +173,23 @@ bool is_cropped(const OIIO::ImageSpec& spec) {
 // Of the whole picture.
 void check_window(const OIIO::ImageSpec& spec, const std::string& file) {
   if (!is_cropped(spec)) return;
-  if (spec.full_width > 0 && spec.full_height > 0 && std::int64_t(spec.full_width) * spec.full_height <= kMaxPadded) {
-    return;
-  }
+  const std::int64_t most = kMaxPadded / std::max(1, spec.nchannels / 4);
+  if (spec.full_width > 0 && spec.full_height > 0 && std::int64_t(spec.full_width) * spec.full_height <= most) return;
   throw Error({file, "displayWindow",
                fmt::format("{} x {} pixels around a data window of {} x {}", spec.full_width, spec.full_height,
                            spec.width, spec.height),
-               fmt::format("at most {} pixels", kMaxPadded)});
+               fmt::format("at most {} pixels", most)});
+}
+
+// OpenImageIO and what decodes the samples here may read a damaged header differently.
+void require_same_shape(const OpenImage& open, const OIIO::ImageSpec& spec, const std::string& file) {
+  const SamplesHeader& samples = open.header;
+  const bool same = spec.width == samples.width && spec.height == samples.height && spec.nchannels == samples.channels;
+  if (open.encoded.empty() || same) return;
+  throw Error({file, "header",
+               fmt::format("contradicts itself: {} x {} x {} or {} x {} x {}", samples.width, samples.height,
+                           samples.channels, spec.width, spec.height, spec.nchannels),
+               "a whole image"});
 }
 
 // OpenImageIO does not say of all formats whose colours never are multiplied that they are not.
@@ -177,6 +203,7 @@ ImageFile header_of(const OpenImage& open, const std::filesystem::path& path) {
   const OIIO::ImageSpec spec = picture_spec(input);
   check_size(spec, path.string());
   check_window(spec, path.string());
+  require_same_shape(open, spec, path.string());
   ImageFile file;
   file.image = Image{spec.full_width, spec.full_height, spec.channelnames, {}};
   file.part = is_cropped(spec);
@@ -294,7 +321,7 @@ void decode_pixels(const OpenImage& open, const std::string& file, Image& image)
 
 void read_pixels(OpenImage& open, const std::string& file, Image& image) {
   if (!open.encoded.empty()) return decode_pixels(open, file, image);
-  if (open.input->read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) return;
+  if (open.input->read_image(open.part, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) return;
   throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(open.input->geterror())), "a whole file"});
 }
 

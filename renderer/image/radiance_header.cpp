@@ -61,6 +61,8 @@ class HeaderReader {
 
   void set_primaries(const Line& line) {
     const std::vector<float> numbers = numbers_of(line, 8);
+    // As Photoshop and ImageMagick write what is not stated.
+    if (std::all_of(numbers.begin(), numbers.end(), [](float n) { return n == 0; })) return;
     header_.chromaticities.emplace();
     std::copy(numbers.begin(), numbers.end(), header_.chromaticities->begin());
   }

@@ -117,7 +117,12 @@ Image stored_colors(const Image& image, const std::string& file) {
   return colors;
 }
 
+// Depth and alpha alone are no colours.
 bool is_grey(const Image& image) {
+  const std::string name = image.channel_names.empty() ? "" : image.channel_names[0];
+  for (const char* other : {"A", "Z", "ZBack", "depth", "Depth"}) {
+    if (name == other || name.ends_with(std::string(".") + other)) return false;
+  }
   return image.channel_count() == 1 || (image.channel_count() == 2 && image.find_channel("A") == 1);
 }
 

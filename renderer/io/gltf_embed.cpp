@@ -22,13 +22,16 @@ std::string bytes_of(const ordered_json& object, const GltfEmbedding& embedding,
   return read_uri(object["uri"].get_ref<const std::string&>(), embedding.base, place + ".uri");
 }
 
+// Empty: of a kind that is not known.
 std::string mime_type_of(const ordered_json& image, const std::string& bytes) {
   if (image.contains("mimeType")) return image["mimeType"].get<std::string>();
   if (bytes.starts_with("\x89PNG")) return "image/png";
   if (bytes.starts_with("\xff\xd8")) return "image/jpeg";
   if (bytes.starts_with("RIFF")) return "image/webp";
   if (bytes.substr(0, 12).find("ftypavi") == 4) return "image/avif";
-  return kBufferMimeType;
+  if (bytes.starts_with("\xabKTX 20\xbb")) return "image/ktx2";
+  if (bytes.starts_with("DDS ")) return "image/vnd-ms.dds";
+  return "";
 }
 
 // The bytes that a buffer says it has.
@@ -111,6 +114,7 @@ void embed_image(ordered_json& root, std::size_t index, std::optional<std::strin
   if (!found) return;
   const std::string& bytes = *found;
   const std::string mime_type = mime_type_of(root["images"][index], bytes);
+  if (mime_type.empty()) return;
   if (embedding.as_text) {
     root["images"][index]["uri"] = make_data_uri(mime_type, bytes);
     return;

@@ -137,16 +137,18 @@ class RuleCheck {
     if (!right) fail(file_, place, "is of the wrong type", kind());
   }
 
-  void check_number(const json& value, const std::string& place) const {
+  // Whole numbers become others: those of extensions tinygltf would cut to 32 bits.
+  void check_number(json& value, const std::string& place) const {
     if (!value.is_number()) fail(file_, place, "is of the wrong type", "a number");
     const double number = value.get<double>();
+    value = number;
     if (number >= rule_.low && number <= rule_.high) return;
     fail(file_, place, fmt::format("is {}", number), fmt::format("{:g} to {:g}", rule_.low, rule_.high));
   }
 
-  void check_numbers(const json& value, const std::string& place) const {
+  void check_numbers(json& value, const std::string& place) const {
     require(value.is_array() && int(value.size()) == rule_.size, place);
-    for (const json& element : value) check_number(element, place);
+    for (json& element : value) check_number(element, place);
   }
 
   // Whole numbers written as 3.0 become 3.

@@ -7,7 +7,7 @@ namespace {
 
 using enum JsonKind;
 
-constexpr double kLargest = 3.4e38;
+constexpr double kLargest = kLargestNumber;
 constexpr bool kRequired = true, kOptional = false;
 
 constexpr JsonRule index(std::string_view path, std::string_view target, bool required = false) {

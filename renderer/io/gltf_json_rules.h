@@ -19,13 +19,16 @@ enum class JsonKind : std::uint8_t {
   kIndices,  // an array of them
 };
 
+// The largest float, as it is mostly written.
+inline constexpr double kLargestNumber = 3.4028235e38;
+
 struct JsonRule {
   std::string_view path;  // from the root: "key", "[]" every element, "*" every member; separated by dots
   JsonKind kind;
   bool required = false;  // by the object that holds it
   std::string_view target = {};
   int size = 0;
-  double low = -3.4e38, high = 3.4e38;
+  double low = -kLargestNumber, high = kLargestNumber;
 };
 
 // An object's or array's own rule stands before those of what it holds.

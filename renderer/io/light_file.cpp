@@ -123,7 +123,8 @@ std::filesystem::path read_image_path(const Entry& entry) {
   if (name.empty()) fail(entry, "image", "is missing", expected);
   const std::filesystem::path folder = std::filesystem::path(entry.file).parent_path(), file = folder / image;
   const bool leads_out = image.is_absolute() || *image.begin() == "..";
-  if (leads_out || (std::filesystem::exists(file) && !is_in_folder(file, folder))) {
+  std::error_code unknown;
+  if (leads_out || (std::filesystem::exists(file, unknown) && !is_in_folder(file, folder))) {
     fail(entry, "image", fmt::format("\"{}\" is outside the light file's folder", shortened(name, 200)), expected);
   }
   return file;

@@ -37,9 +37,15 @@ void add_instance(const GltfDocument& document, const PlacedNode& node, int inde
   scene.instances.push_back({instance_name(node, mesh), index, transform});
 }
 
+// Everything comes to one place.
+bool is_point(const Mat4f& transform) {
+  return std::all_of(transform.m.begin(), transform.m.begin() + 12, [](float entry) { return entry == 0; });
+}
+
 // Of transforms that have no inverse, as scales of zero, or none in floats. Adds nothing where no area is left.
 void add_as_mesh_of_its_own(const GltfDocument& document, const PlacedNode& node, int index, const Mat4f& transform,
                             Scene& scene) {
+  if (is_point(transform)) return;
   check_vertices(document, node, scene.meshes[std::size_t(index)], transform);
   std::optional<Mesh> mesh = mesh_in_world(scene, index, transform);
   if (!mesh) return;

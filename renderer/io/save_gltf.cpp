@@ -32,20 +32,42 @@ void remove_extension(ordered_json& object) {
   if (is_empty(object, "extensions")) object.erase("extensions");
 }
 
-void remove_name(ordered_json& root, const char* key) {
+void remove_name(ordered_json& root, const char* key, const char* name) {
   if (!root.contains(key)) return;
   ordered_json& names = root[key];
-  names.erase(std::remove(names.begin(), names.end(), ordered_json(kExtension)), names.end());
+  names.erase(std::remove(names.begin(), names.end(), ordered_json(name)), names.end());
   if (names.empty()) root.erase(key);
 }
 
+// Channels of KHR_animation_pointer that lead to lights; those without channels left.
+void remove_animations_of_lights(ordered_json& root) {
+  constexpr const char* kPointer = "KHR_animation_pointer";
+  const ordered_json::json_pointer pointer_of(std::string("/target/extensions/") + kPointer + "/pointer");
+  const std::string lights = std::string("/extensions/") + kExtension + "/";
+  if (!root.contains("animations")) return;
+  bool any_left = false;
+  std::erase_if(root["animations"].get_ref<ordered_json::array_t&>(), [&](ordered_json& animation) {
+    auto& channels = animation["channels"].get_ref<ordered_json::array_t&>();
+    std::erase_if(channels, [&](const ordered_json& channel) {
+      const bool points = channel.contains(pointer_of) && channel[pointer_of].is_string();
+      const bool to_light = points && channel[pointer_of].get_ref<const std::string&>().starts_with(lights);
+      any_left |= points && !to_light;
+      return to_light;
+    });
+    return channels.empty();
+  });
+  if (root["animations"].empty()) root.erase("animations");
+  if (!any_left) remove_name(root, "extensionsUsed", kPointer), remove_name(root, "extensionsRequired", kPointer);
+}
+
 void remove_lights(ordered_json& root) {
+  remove_animations_of_lights(root);
   remove_extension(root);
   if (root.contains("nodes")) {
     for (ordered_json& node : root["nodes"]) remove_extension(node);
   }
-  remove_name(root, "extensionsUsed");
-  remove_name(root, "extensionsRequired");
+  remove_name(root, "extensionsUsed", kExtension);
+  remove_name(root, "extensionsRequired", kExtension);
 }
 
 // Color and intensity of KHR_lights_punctual: the brightest channel is 1.
@@ -143,9 +165,10 @@ void add_lights(ordered_json& root, const Lights& lights) {
 }
 
 // Definitions that several nodes share become their own. A range, which the intensities given do not know of, would cut
-// them off in other programs.
+// them off in other programs, and animations would change them.
 void relight(ordered_json& root, const std::vector<int>& nodes, const Lights& lights) {
   CHIARO_CHECK(nodes.size() == lights.size());
+  remove_animations_of_lights(root);
   const auto light_of = [](ordered_json& node) -> ordered_json* {
     const bool lit = node.contains("extensions") && node["extensions"].contains(kExtension);
     return lit ? &node["extensions"][kExtension]["light"] : nullptr;

@@ -151,6 +151,16 @@ TEST(ExrFile, PicturesAreAsLargeAsTheirDisplayWindow) {
       << error_of([&] { load_image(path); });
 }
 
+// Sizes are checked before memory is taken: 64 channels of it would be 31 GB.
+TEST(ExrFile, LargeWindowsOfManyChannelsAreRefused) {
+  const TemporaryFolder folder;
+  std::vector<std::string> names;
+  for (int c = 0; c < 64; ++c) names.push_back("c" + std::to_string(c));
+  save_image(make_image(1, 1, names), folder / "a.exr", PixelType::kHalf);
+  set_display_window(folder / "a.exr", {0, 0, 10999, 10999});
+  EXPECT_NE(error_of([&] { load_image(folder / "a.exr"); }).find("displayWindow"), std::string::npos);
+}
+
 TEST(ExrFile, TheHeaderAloneHasNoPixels) {
   const TemporaryFolder folder;
   save_image(layered_image(), folder / "frame.exr", PixelType::kHalf, frame_attributes());
@@ -307,6 +317,16 @@ TEST(DecodeTexture, WebpIsAsStoredWhateverItsAlpha) {
               std::string::npos);
     EXPECT_NE(error_of([&] { load_image(folder.write("cut.webp", bytes.substr(0, size))); }), "");
   }
+}
+
+// Its flags say that there is no alpha, which there is.
+TEST(DecodeTexture, WebpThatContradictsItselfIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.write(
+      "t.webp", from_base64("UklGRoIAAABXRUJQVlA4WAoAAAAAAAAABwAABwAAQUxQSAwAAAABD/DA/4iIUPiI/gdWUDggUAAAAHADAJ0BKggACA"
+                            "AAAAAlqAJ0twD9AP4BSgPwArv/cAARgdy0QAD+//4ih//pXw///zw3VJvn76J8mBR12q//l8qFvYZPn7uTSHxEpq//"
+                            "RtAA"));
+  EXPECT_NE(error_of([&] { load_image(path); }).find("contradicts itself"), std::string::npos);
 }
 
 TEST(DecodeTexture, AvifIsReadFromMemoryAndTruncatedOnesAreRefused) {

@@ -49,6 +49,14 @@ TEST(RadianceHeader, PrimariesAreThoseOfThePixels) {
   EXPECT_NEAR(green.z, -0.1006F, 1e-3F);
 }
 
+// As Photoshop and ImageMagick write it.
+TEST(RadianceHeader, PrimariesOfZerosAreNotStated) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.hdr", picture("GAMMA=1\nPRIMARIES=0 0 0 0 0 0 0 0\n"));
+  EXPECT_FALSE(read_radiance_header(file).chromaticities.has_value());
+  EXPECT_NO_THROW(scene_linear_rec709(load_image(file), file.string()));
+}
+
 TEST(RadianceHeader, WhatCannotBeUndoneIsRefused) {
   const TemporaryFolder folder;
   EXPECT_NO_THROW(read(folder, picture("GAMMA=1.0\n")));

@@ -18,6 +18,13 @@ ImageFile file_of(Image image, Attributes attributes = {}) {
   return file;
 }
 
+TEST(SceneLinear, DepthIsNoColor) {
+  EXPECT_EQ(scene_linear_rec709(file_of(Image{1, 1, {"Y"}, {3}}), "x.exr").front(), (Vec3f{3, 3, 3}));
+  for (const char* name : {"Z", "A", "depth", "ViewLayer.Depth"}) {
+    EXPECT_NE(test::error_of([&] { scene_linear_rec709(file_of(Image{1, 1, {name}, {3}}), "x.exr"); }), "") << name;
+  }
+}
+
 TEST(SceneLinear, OtherPrimariesAreKnownAndConverted) {
   const Image green{1, 1, {"R", "G", "B"}, {0, 1, 0}};
   EXPECT_FALSE(has_other_primaries(file_of(green), "x.exr"));

@@ -104,6 +104,17 @@ TEST(GltfMaterialLayers, ValuesOutOfRangeAreClampedWithAWarning) {
   EXPECT_NE(loaded.warnings[0].find("materials[0].extensions.KHR_materials_ior.ior"), std::string::npos);
 }
 
+// As writers in JavaScript have them; 3.4028235e38 is a float that is as good as infinite.
+TEST(GltfMaterialLayers, WholeNumbersMayBeLarge) {
+  const LoadedScene loaded =
+      load(scene_with({{"emissiveFactor", {1, 1, 1}},
+                       {"extensions",
+                        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 3000000000}}},
+                         {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                         {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 3.4028235e38}}}}}}));
+  EXPECT_EQ(loaded.scene.materials[0].emission, (Vec3f{3e9F, 3e9F, 3e9F}));
+}
+
 TEST(GltfMaterialLayers, ADiffuseSceneHasNone) {
   LoadedScene loaded = load(scene_with(
       {{"emissiveFactor", {1, 1, 1}},

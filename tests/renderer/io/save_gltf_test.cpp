@@ -210,6 +210,32 @@ TEST(SaveGltfLights, AnImageThatIsMissingStaysMissing) {
   EXPECT_NE(read_file(folder / "lit.glb").find("\"uri\":\"gone.png\""), std::string::npos);
 }
 
+// They would give the lights that were found what those before them did.
+TEST(SaveGltfLights, AnimationsOfLightsThatAreGoneGoWithThem) {
+  GltfBuilder gltf = triangle_scene();
+  const auto channel = [](const char* pointer) {
+    return ordered_json{
+        {"sampler", 0},
+        {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}};
+  };
+  const ordered_json samplers = {{{"input", 0}, {"output", 0}}}, of_node = channel("/nodes/0/translation"),
+                     of_light = channel("/extensions/KHR_lights_punctual/lights/0/intensity");
+  gltf.root["animations"] = {{{"samplers", samplers}, {"channels", {of_light}}},
+                             {{"samplers", samplers}, {"channels", {of_light, of_node}}}};
+  gltf.root["extensionsUsed"] = {"KHR_animation_pointer"};
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.glb", gltf.glb());
+  const auto saved = [&] {
+    save_gltf_with_lights(scene, some_lights(), folder / "lit.glb", {});
+    return ordered_json::parse(read_gltf_container(folder / "lit.glb").json);
+  };
+  EXPECT_EQ(saved()["animations"], (ordered_json{{{"samplers", samplers}, {"channels", {of_node}}}}));
+  gltf.root["animations"].erase(1);
+  folder.write("scene.glb", gltf.glb());
+  EXPECT_FALSE(saved().contains("animations"));
+  EXPECT_EQ(saved()["extensionsUsed"], (ordered_json{"KHR_lights_punctual"}));
+}
+
 // All that this program reads, and what it does not, as compressing programs write it: a file is not read to be saved.
 TEST(SaveGltfLights, CompressedDataAnimationsAndExtensionsStayAsTheyAre) {
   GltfBuilder gltf = triangle_scene();
