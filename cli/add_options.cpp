@@ -67,7 +67,7 @@ CLI::Option* add_text(CLI::App& command, const OptionText& text, std::string& va
 }
 
 CLI::Option* add_flag(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
-  return command.add_flag(name, value, help);
+  return command.add_flag(name, value, help)->disable_flag_override();
 }
 
 CLI::Option* naming_inputs(CLI::Option* option) {

@@ -25,12 +25,12 @@ int run_merge(const MergeCommand& options) {
   session.require_outputs({options.output});
   const std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
   inverse::merge_transport_caches(parts, options.output, session.control());
-  const double bytes = double(std::filesystem::file_size(options.output));
+  const auto bytes = std::int64_t(std::filesystem::file_size(options.output));
   session.finish(
       JsonObject{{"output", options.output}, {"parts", parts.size()}, {"bytes", bytes}, {"seconds", session.seconds()}},
       aligned_rows({{"parts", fmt::format("{}", parts.size())},
                     {"time", text_of_seconds(session.seconds())},
-                    {"written", fmt::format("{}, {}", options.output, text_of_bytes(bytes))}}));
+                    {"written", fmt::format("{}, {}", options.output, text_of_bytes(double(bytes)))}}));
   return kDone;
 }
 

@@ -128,7 +128,9 @@ CommandRun add_render(CLI::App& command) {
   add_output(command, {"-o,--output", "F.exr", "The frame"}, options->output, {".exr"});
   add_input_file(command, {"--lights", "L", "Light file in place of the scene's lights"}, options->lights);
   add_text(command, {"--camera", "NAME", "Camera (default: the first)"}, options->camera);
-  add_number(command, {"--time", "SECONDS", "Render for so long; --samples, if given, is then the most"},
+  add_number(command,
+             {"--time", "SECONDS",
+              "Render for so long, but four samples of every pixel at least; --samples, if given, is then the most"},
              options->frame.time_limit, kPositive);
   add_flag(command, "--preview", options->preview, "Write F.png beside the frame, through OpenColorIO");
   add_frame_options(command, options->frame, fmt::format("--samples, {} by default,", kUntilClean));

@@ -44,8 +44,9 @@ void print_summary(Session& session, const SolveCommand& options, const WantedTa
                    const inverse::SolveResult& result) {
   JsonObject summary = solve_summary(result);
   summary.insert(summary.end(), wanted.pictures.begin(), wanted.pictures.end());
-  const std::string written =
-      aligned_rows({{"written", fmt::format("{}, {}", options.output, beside(options.output, ".json").string())}});
+  std::string files = fmt::format("{}, {}", options.output, beside(options.output, ".json").string());
+  for (const std::string& other : {options.save_target, options.report}) files += other.empty() ? "" : ", " + other;
+  const std::string written = aligned_rows({{"written", files}});
   session.finish(summary, wanted.text + solve_text(result) + written);
 }
 

@@ -39,14 +39,15 @@ JsonObject summary_of(const Figures& f, JsonList max_at) {
           {"max_at", std::move(max_at)}};
 }
 
-std::vector<TextRow> rows_of(const Figures& f, const std::string& place) {
+// unit: of what is compared, after a blank; empty: it has none.
+std::vector<TextRow> rows_of(const Figures& f, const std::string& unit, const std::string& place) {
   return {{"relative L2", text_of_percent(f.relative_l2)},
-          {"RMSE", fmt::format("{:.4g}", f.rmse)},
+          {"RMSE", fmt::format("{:.4g}{}", f.rmse, unit)},
           {"relative MSE", fmt::format("{:.4g}", f.relative_mse)},
           {"PSNR", fmt::format("{:.4g} dB", f.psnr)},
-          {"mean of A", text_of_vector(f.mean_a)},
-          {"mean of B", text_of_vector(f.mean_b)},
-          {"largest difference", fmt::format("{:.4g} at {}", f.max_difference, place)}};
+          {"mean of A", text_of_vector(f.mean_a) + unit},
+          {"mean of B", text_of_vector(f.mean_b) + unit},
+          {"largest difference", fmt::format("{:.4g}{} at {}", f.max_difference, unit, place)}};
 }
 
 using Channels = std::array<renderer::ChannelComparison, 3>;
@@ -151,7 +152,7 @@ JsonObject comparison_summary(const FrameComparison& comparison) {
 
 std::string comparison_text(const FrameComparison& comparison) {
   const renderer::ImageComparison& image = comparison.whole.image;
-  std::vector<TextRow> rows = rows_of(figures_of(image), fmt::format("pixel {}, {}", image.max_x, image.max_y));
+  std::vector<TextRow> rows = rows_of(figures_of(image), "", fmt::format("pixel {}, {}", image.max_x, image.max_y));
   if (comparison.whole.flip) rows.emplace_back("FLIP", text_of(comparison.whole.flip));
   if (const renderer::HdrFlip& hdr = comparison.hdr_flip; hdr.exposures > 0) {
     rows.emplace_back("HDR-FLIP", fmt::format("{} over {} exposures, {:.3g} to {:.3g} EV",
@@ -169,7 +170,7 @@ JsonObject comparison_summary(const inverse::TargetComparison& comparison, Vec3f
 }
 
 std::string comparison_text(const inverse::TargetComparison& comparison, Vec3f place) {
-  return aligned_rows(rows_of(figures_of(comparison), text_of_vector(place) + " m")) + "\n" +
+  return aligned_rows(rows_of(figures_of(comparison), " cd/m²", text_of_vector(place) + " m")) + "\n" +
          channel_table(comparison.channels) + surface_table(comparison);
 }
 

@@ -38,6 +38,7 @@ std::string option_of(std::string key) {
 }  // namespace
 
 void add_constraint_options(CLI::App& command, ConstraintOptions& options) {
+  options.command = &command;
   inverse::LightConstraints& given = options.given;
   add_input_file(command,
                  {"--constraints", "FILE", "What follows here, and regions, as a JSON file; options come first"},
@@ -68,7 +69,10 @@ inverse::LightConstraints choose_constraints(const ConstraintOptions& options, c
   inverse::LightConstraints constraints = options.given;
   constraints.regions = grid.regions;
   if (!options.file.empty()) constraints = merged(constraints, inverse::load_constraints(options.file));
-  if (const auto contradiction = find_contradiction(constraints, option_of)) throw UsageError(contradiction->reason);
+  const auto name = [&](const std::string& key) {
+    return was_given(*options.command, option_of(key)) ? option_of(key) : fmt::format("{}: {}", options.file, key);
+  };
+  if (const auto contradiction = find_contradiction(constraints, name)) throw UsageError(contradiction->reason);
   return constraints;
 }
 

@@ -16,6 +16,7 @@ namespace chiaro::cli {
 struct ConstraintOptions {
   inverse::LightConstraints given;  // as options, but for regions, which bakes have, too
   std::string file;
+  const CLI::App* command = nullptr;  // that they are options of
 };
 
 // --constraints and all that its file may hold, but for --region.

@@ -105,7 +105,7 @@ void add_illumination(Inspection& inspection, const IlluminationFigures& figures
 
 void add_weights(Inspection& inspection, const WeightFigures& figures) {
   inspection.add("weight", JsonObject{{"min", figures.min}, {"max", figures.max}, {"zero", figures.zero}}, "weights",
-                 fmt::format("{:.4g} to {:.4g}, {} are 0", figures.min, figures.max, figures.zero));
+                 fmt::format("{:.4g} to {:.4g}, of {} receivers 0", figures.min, figures.max, figures.zero));
 }
 
 }  // namespace

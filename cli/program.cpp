@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -81,9 +82,20 @@ void require_known_command(const CLI::App& program, int argc, const char* const*
   throw UsageError(fmt::format("'{}' is no command (expected one of: {})", argv[1], fmt::join(names, ", ")));
 }
 
+// `--lights=` with nothing behind it, as scripts write of an empty variable: CLI11 would take what follows.
+void refuse_empty_values(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word.starts_with("--") && word.ends_with('=')) {
+      throw UsageError(fmt::format("{}: is empty (expected a value)", word.substr(0, word.size() - 1)));
+    }
+  }
+}
+
 int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, const char* const* argv) {
   try {
     require_known_command(program, argc, argv);
+    refuse_empty_values(argc, argv);
     program.parse(argc, argv);
     return run_parsed_command(commands);
   } catch (const CLI::Success& help_or_version) {

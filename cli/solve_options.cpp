@@ -57,7 +57,9 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
                           solve.weak_light)},
              solve.weak_light, kZeroToOne);
   add_number(command,
-             {"--time-limit", "SECONDS", "Stop searching then, with what is found (without the time of the bake)"},
+             {"--time-limit", "SECONDS",
+              "Stop searching then, with what is found; a last check of at least 16 paths per receiver and the bake "
+              "come beside"},
              solve.time_limit, kPositive);
   add_count(command,
             {"--verification-samples", "N",

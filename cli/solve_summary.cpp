@@ -141,7 +141,8 @@ std::string solve_text(const inverse::SolveResult& result) {
                             {"before the last optimisation", text_of_percent(result.initial_relative_l2)}};
   rows.emplace_back("its noise, taken out", text_of_percent(result.verification_noise));
   if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
-  if (!result.error_curve.empty()) rows.emplace_back("by number of lights", text_of_curve(result.error_curve));
+  if (!result.error_curve.empty())
+    rows.emplace_back("in the search, by number of lights", text_of_curve(result.error_curve));
   for (const auto& [one, other] : result.not_told_apart) {
     rows.emplace_back("not told apart", fmt::format("lights {} and {}: only their sum is known", one, other));
   }

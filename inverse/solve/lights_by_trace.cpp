@@ -109,6 +109,7 @@ LightsByTrace refit_by_trace(const SolveProblem& problem, const SolveOptions& op
   const IntensityFit fit =
       fit_traced_columns(observations, unity, traced_again(problem, again, control, lights, draw.chosen));
   for (std::size_t j = 0; j < lights.size(); ++j) by_trace.lights[j] = {lights[j].position, fit.intensity[j]};
+  put_out_residue(by_trace.lights);
   std::vector<Eigen::Array3d> grown;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     grown.push_back(growth(lights[j].intensity, by_trace.lights[j].intensity));

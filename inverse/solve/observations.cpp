@@ -50,6 +50,15 @@ LightEstimates::iterator brightest_light(LightEstimates& lights) {
                           [](const auto& a, const auto& b) { return a.intensity.maxCoeff() < b.intensity.maxCoeff(); });
 }
 
+void put_out_residue(LightEstimates& lights) {
+  constexpr double kResidue = 1e-9;  // of the brightest
+  if (lights.empty()) return;
+  const double brightest = brightest_light(lights)->intensity.maxCoeff();
+  for (LightEstimate& light : lights) {
+    if (light.intensity.maxCoeff() < kResidue * brightest) light.intensity.setZero();
+  }
+}
+
 renderer::PointLight point_light(const LightEstimate& estimate) {
   renderer::PointLight light;
   light.position = to_vec3f(estimate.position);

@@ -66,6 +66,9 @@ inline bool is_dark(const LightEstimate& light) { return !(light.intensity > 0).
 // By its brightest channel; end() of none.
 LightEstimates::iterator brightest_light(LightEstimates& lights);
 
+// Lights that shine by what rounding left of them go dark.
+void put_out_residue(LightEstimates& lights);
+
 renderer::PointLight point_light(const LightEstimate& estimate);
 renderer::Lights point_lights(const LightEstimates& estimates);
 LightEstimates light_estimates(const std::vector<renderer::PointLight>& lights);

@@ -11,6 +11,26 @@ namespace chiaro::inverse {
 
 using renderer::Error;
 
+namespace {
+
+std::string text_of_bounces(int bounces) { return bounces < 0 ? "all bounces" : fmt::format("{} bounces", bounces); }
+
+// A cache knows what is seen from beside the vertices. Of receivers that have moved to where pictures show them that is
+// found anew; of light by bounces there is little that changes on the way.
+void look_from_samples(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
+                       const renderer::Control& control, TransportCache& cache) {
+  renderer::parallel_for(cache.grid.positions.size(), "cache", control, [&](std::size_t light) {
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const renderer::SurfaceSample& at = problem.target.receivers.samples[chosen[k]];
+      const auto seed = std::uint32_t(light * chosen.size() + k);
+      const bool seen = sees(problem.tracer, at, cache.grid.positions[light], seed);
+      cache.visibility[light * chosen.size() + k] = seen ? 1 : 0;
+    }
+  });
+}
+
+}  // namespace
+
 void require_fitting_cache(const SolveProblem& problem) {
   if (!problem.cache_file) return;
   const std::string file = problem.cache_file->string();
@@ -28,28 +48,10 @@ void require_fitting_cache(const SolveProblem& problem) {
                  "a cache baked with --on the target, or with the --on or --max-edge that it was painted with"});
   }
   if (header.settings.bounces != problem.bake.bounces) {
-    throw Error({file, "header", fmt::format("stale cache: baked with {} bounces", header.settings.bounces),
-                 fmt::format("{} (-1: all)", problem.bake.bounces)});
+    throw Error({file, "header", fmt::format("stale cache: baked with {}", text_of_bounces(header.settings.bounces)),
+                 fmt::format("{}, as --bounces says", text_of_bounces(problem.bake.bounces))});
   }
 }
-
-namespace {
-
-// A cache knows what is seen from beside the vertices. Of receivers that have moved to where pictures show them that is
-// found anew; of light by bounces there is little that changes on the way.
-void look_from_samples(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
-                       const renderer::Control& control, TransportCache& cache) {
-  renderer::parallel_for(cache.grid.positions.size(), "cache", control, [&](std::size_t light) {
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-      const renderer::SurfaceSample& at = problem.target.receivers.samples[chosen[k]];
-      const auto seed = std::uint32_t(light * chosen.size() + k);
-      const bool seen = sees(problem.tracer, at, cache.grid.positions[light], seed);
-      cache.visibility[light * chosen.size() + k] = seen ? 1 : 0;
-    }
-  });
-}
-
-}  // namespace
 
 PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,
                                     const renderer::Control& control) {

@@ -350,6 +350,7 @@ class Settler {
   // As many as asked for, or those that matter.
   LightIntervals only_needed(const SettlingBench& bench, const CarryAlong& carry_along, FreeLights& free) const {
     if (options_.exact_lights == 0) return remove_needless(bench, carry_along, free);
+    put_out_residue(free.now);
     let_the_dark_share(free);
     return bench.intervals(free.indirect, free.now);
   }

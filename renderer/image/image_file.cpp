@@ -134,7 +134,10 @@ OpenImage open(const std::filesystem::path& path) {
                                        image.reader.get());
   if (!image.input) {
     const std::string reason = first_line(OIIO::geterror());
-    throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", reason), "an image"});
+    const bool known = reason.find("could not find a format reader") == std::string::npos;
+    throw Error({path.string(), "",
+                 known ? fmt::format("is not an image that can be read: {}", reason) : "is of no kind that is known",
+                 "an image"});
   }
   image.part = choose_part(*image.input);
   if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);

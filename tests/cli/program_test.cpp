@@ -72,6 +72,16 @@ INSTANTIATE_TEST_SUITE_P(
         Arguments{"compare", "a.glb", "b.glb", "-o", "d.png"}),
     name_of);
 
+// As scripts write options of empty variables: the next word is no value of theirs.
+TEST(CliProgram, EmptyValuesAreRefused) {
+  for (const Arguments& words : {Arguments{"solve", "--lights=", "3", "room.glb"}, {"render", "--seed=", "--quiet"}}) {
+    const Outcome outcome = run_with(words);
+    EXPECT_EQ(outcome.exit_code, kWrongUsage);
+    EXPECT_NE(outcome.standard_error.find("is empty"), std::string::npos) << outcome.standard_error;
+  }
+  EXPECT_EQ(run_with({"inspect", "room.glb", "--quiet=5"}).exit_code, kWrongUsage);
+}
+
 TEST(CliProgram, AMissingFileIsOneLineOfError) {
   const Outcome outcome = run_with({"inspect", "no/such/file.glb"});
   EXPECT_EQ(outcome.exit_code, kFailed);

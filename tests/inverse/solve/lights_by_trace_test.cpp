@@ -102,5 +102,12 @@ TEST_F(RefitByTrace, DarkChannelsStayDark) {
   for (const Vec3f& light : refitted.traced.all.value) EXPECT_EQ(light.y, 0);
 }
 
+TEST(PutOutResidue, TakesWhatRoundingLeftForDarkAndNothingElse) {
+  LightEstimates lights{{{0, 0, 0}, {3, 2, 1}}, {{1, 0, 0}, {0, 0, 1e-12}}, {{2, 0, 0}, {1e-6, 0, 0}}};
+  put_out_residue(lights);
+  EXPECT_TRUE(is_dark(lights[1]));
+  EXPECT_FALSE(is_dark(lights[0]) || is_dark(lights[2]));
+}
+
 }  // namespace
 }  // namespace chiaro::inverse
