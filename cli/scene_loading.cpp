@@ -1,6 +1,7 @@
 #include "cli/scene_loading.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -16,9 +17,11 @@ namespace {
 
 constexpr double kGiB = 1024.0 * 1024 * 1024, kMostGiBOfGlb = 4;
 
+// Each file once, as a URI may be read in two ways.
 std::uintmax_t size_of_referred_files(const std::filesystem::path& scene) {
+  const std::vector<std::filesystem::path> files = renderer::referred_files(scene);
   std::uintmax_t size = 0;
-  for (const std::filesystem::path& file : renderer::referred_files(scene)) {
+  for (const std::filesystem::path& file : std::set(files.begin(), files.end())) {
     std::error_code missing;
     const std::uintmax_t bytes = std::filesystem::file_size(file, missing);
     if (!missing) size += bytes;
