@@ -70,13 +70,12 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   if (problem.intensities.any()) {
     throw Error(
         {problem.tracer.scene().path, "solve",
-         "no light possible: none that is as bright and of such a colour as the constraints say comes closer to "
-         "the target than none at all",
+         "no light possible: none that keeps to the constraints brings what shines already closer to the target",
          "other limits of intensity or colour, or another target"});
   }
   no_light_possible(problem, problem.kept_lights.empty()
-                                 ? "none comes closer to the target than what shines already"
-                                 : "none comes closer to the target than the lights that stay lit do alone");
+                                 ? "none brings what shines already closer to the target"
+                                 : "none brings the lights that stay lit closer to the target than they are alone");
 }
 
 // They light nothing that is painted where they stand, or had better not.

@@ -211,12 +211,14 @@ TEST(Solve, SaysWhereLightsHadBetterBeDark) {
     target.illumination[i] = 1.5F * target.illumination[i];
   SolveProblem too_bright = problem_of(corner, target, -1);
   too_bright.kept_lights = point_lights(brighter);
-  expect_said(error_of(too_bright, quick()), "no light possible: none brings what shines already closer to the target");
+  expect_said(error_of(too_bright, quick()),
+              "no light possible: none brings the lights that stay lit closer to the target");
   // What is left is noise, of which a light makes something.
   const Target explained = corner.target(known_lights(1), -1);
   SolveProblem all_there = problem_of(corner, explained, -1);
   all_there.kept_lights = point_lights(known_lights(1));
-  expect_said(error_of(all_there, quick()), "no light possible: none brings what shines already closer to the target");
+  expect_said(error_of(all_there, quick()),
+              "no light possible: none brings the lights that stay lit closer to the target");
   SolveProblem limited = problem_of(corner, target, -1);
   limited.intensities.max_intensity = 1e-20;
   expect_said(error_of(limited, quick()), "no light possible: none that keeps to the constraints brings");
