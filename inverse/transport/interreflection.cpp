@@ -12,6 +12,7 @@ namespace {
 constexpr double kErrorBound = 1e-3;  // relative, of what is left
 constexpr double kLeastRadius = 0.05, kMostRadius = 0.999;
 constexpr double kMostImaginary = 0.95;   // of the spectral radius
+constexpr int kBouncesAtOnce = 64;        // until it is asked whether more would add anything
 constexpr int kWarmUp = 8, kPowers = 16;  // of K, for its spectral radius
 
 // Of an ellipse with semi-axes a and b.
@@ -29,23 +30,31 @@ int steps_needed(const Interreflection& k) {
   return int(std::ceil(std::log(kErrorBound / 2) / std::log(slowest)));
 }
 
+// Of thousands of bounces the last are too dim.
+template <class Lanes>
+bool adds_anything(const std::vector<Lanes>& term, const std::vector<Lanes>& sum) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      for (int l = 0; l < Lanes::kLanes; ++l) {
+        if (sum[i].channel[c][l] + term[i].channel[c][l] != sum[i].channel[c][l]) return true;
+      }
+    }
+  }
+  return false;
+}
+
 template <class Lanes>
 std::vector<Lanes> first_terms(const SparseTransport& one_bounce, const std::vector<Lanes>& direct, int count) {
   std::vector<Lanes> sum = direct, term = direct, next(direct.size());
   for (int bounce = 1; bounce < count; ++bounce) {
     multiply(one_bounce, term, next);
     std::swap(term, next);
-    bool changes = false;
+    if (bounce % kBouncesAtOnce == 0 && !adds_anything(term, sum)) break;
     for (std::size_t i = 0; i < sum.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
-        for (int l = 0; l < Lanes::kLanes; ++l) {
-          const float before = sum[i].channel[c][l];
-          sum[i].channel[c][l] += term[i].channel[c][l];
-          changes |= sum[i].channel[c][l] != before;
-        }
+        for (int l = 0; l < Lanes::kLanes; ++l) sum[i].channel[c][l] += term[i].channel[c][l];
       }
     }
-    if (!changes) break;  // of thousands of bounces the last are too dim
   }
   return sum;
 }

@@ -18,8 +18,8 @@ struct AlbedoTable {
   std::array<std::array<Albedo, kSize>, kSize> directional;  // [roughness][cosine]
   std::array<Albedo, kSize> mean;                            // [roughness], of cosine-weighted viewers
 
-  // Of the mean over viewers, 2 ∫ albedo cosθ d(cosθ), up to a factor: the trapezoidal rule. (The first step's cosine is
-  // zero.)
+  // Of the mean over viewers, 2 ∫ albedo cosθ d(cosθ), up to a factor: the trapezoidal rule. (The first step's cosine
+  // is zero.)
   static float weight_in_mean(int step) { return step == kSize - 1 ? 0.5F * float(step) : float(step); }
 
   Albedo at(float cosine, float alpha) const {

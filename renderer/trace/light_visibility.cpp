@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t kMostCounts = 500'000;  // 6 MB
 constexpr double kMostCells = 32 * 32 * 32;
 constexpr std::size_t kWays = 6;
-constexpr std::uint64_t kManyRays = std::uint64_t(1)
-                                    << 28;  // of a light and a part: a pass brings fewer than 2³² − this
+// Of a light and a part: a pass brings fewer than 2³² − this.
+constexpr std::uint64_t kManyRays = std::uint64_t(1) << 28;
 // No light's chance falls below this part of what it would be if it were seen.
 constexpr float kLeastFactor = 0.05F;
 

@@ -208,7 +208,8 @@ Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights
              const Control& control) {
   const Clock clock(options.time_limit);
   std::optional<LightVisibility> visibility;
-  if (lights.size() > LightSelection::kFew && lights.size() <= LightSelection::kWeighed) visibility.emplace(tracer.bounds(), lights.size());
+  const bool may_learn = lights.size() > LightSelection::kFew && lights.size() <= LightSelection::kWeighed;
+  if (may_learn) visibility.emplace(tracer.bounds(), lights.size());
   LightVisibility* const learnt = visibility ? &*visibility : nullptr;
   const PathTracer paths(tracer, lights, options.trace, learnt);
   const CameraRays rays(camera, options.width, options.height, options.lens);
