@@ -17,6 +17,7 @@
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "renderer/core/counted.h"
+#include "renderer/core/file_extension.h"
 #include "renderer/image/image_file.h"
 
 namespace chiaro::cli {
@@ -34,7 +35,7 @@ struct CompareCommand {
   FrameComparisonOptions frames;
 };
 
-bool is_target(const std::string& file) { return has_extension(file, {".glb", ".gltf"}); }
+bool is_target(const std::string& file) { return renderer::has_extension(file, {".glb", ".gltf"}); }
 
 // Of a file that is no target. Error where it is no picture either.
 const char* kind_of(const std::string& file) {

@@ -6,11 +6,11 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/inspect.h"
-#include "cli/output_paths.h"
 #include "cli/program.h"
 #include "cli/scene_options.h"
 #include "cli/session.h"
 #include "renderer/core/atomic_file.h"
+#include "renderer/core/file_extension.h"
 
 namespace chiaro::cli {
 namespace {
@@ -42,8 +42,8 @@ bool is_vertex_mesh(const std::string& bytes) {
 }
 
 Inspection inspect_other_than_scene(const std::string& file) {
-  if (has_extension(file, {".glb", ".gltf"})) return inspect_vertex_mesh(file);
-  if (has_extension(file, {".json"})) {
+  if (renderer::has_extension(file, {".glb", ".gltf"})) return inspect_vertex_mesh(file);
+  if (renderer::has_extension(file, {".json"})) {
     return mentions(renderer::read_file(file), "\"strokes\"") ? inspect_strokes(file) : inspect_light_file(file);
   }
   return inspect_picture(file);
@@ -51,7 +51,7 @@ Inspection inspect_other_than_scene(const std::string& file) {
 
 Inspection inspect(const InspectCommand& options, const renderer::Control& control) {
   const std::string& file = options.file;
-  if (has_extension(file, {".glb", ".gltf"}) && !is_vertex_mesh(renderer::read_file(file))) {
+  if (renderer::has_extension(file, {".glb", ".gltf"}) && !is_vertex_mesh(renderer::read_file(file))) {
     return inspect_scene(file, options.load, control);
   }
   Inspection inspection = inspect_other_than_scene(file);

@@ -5,6 +5,7 @@
 #include "cli/add_options.h"
 #include "cli/output_paths.h"
 #include "cli/usage_error.h"
+#include "renderer/core/file_extension.h"
 #include "renderer/image/image_file.h"
 
 namespace chiaro::cli {
@@ -27,7 +28,7 @@ Image with_pixels(int width, int height, std::vector<std::string> channels, cons
   return image;
 }
 
-bool is_exr(const std::string& file) { return has_extension(file, {".exr"}); }
+bool is_exr(const std::string& file) { return renderer::has_extension(file, {".exr"}); }
 
 }  // namespace
 

@@ -15,6 +15,7 @@
 
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_extension.h"
 #include "renderer/core/file_lock.h"
 #include "renderer/core/shortened.h"
 #include "renderer/io/referred_files.h"
@@ -25,11 +26,6 @@ namespace {
 using renderer::Error;
 
 constexpr std::size_t kLongestName = 100;  // bytes of a name of a user's, of which a file's may have 255
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
 
 // Permissions alone do not tell: a folder may be on a read-only or a virtual file system.
 void try_to_make_file(const std::filesystem::path& folder, const std::filesystem::path& wanted) {
@@ -105,13 +101,8 @@ void require_apart_from_referred(const std::vector<std::filesystem::path>& input
 
 }  // namespace
 
-bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
-  const std::string extension = lower_case(path.extension().string());
-  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
-}
-
 void require_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
-  if (has_extension(path, extensions)) return;
+  if (renderer::has_extension(path, extensions)) return;
   throw UsageError(fmt::format("'{}' (expected a name ending in {})", path.string(), fmt::join(extensions, " or ")));
 }
 

@@ -9,8 +9,6 @@ namespace chiaro::cli {
 // UsageError where `path` ends in none of `extensions` (".exr"; case does not matter).
 void require_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions);
 
-bool has_extension(const std::filesystem::path& path, const std::vector<std::string>& extensions);
-
 // Error where a folder has the name, or standard output is that file.
 void require_file_name(const std::filesystem::path& path);
 

@@ -1,7 +1,6 @@
 #include "renderer/image/image_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -16,6 +15,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_extension.h"
 #include "renderer/image/decode_samples.h"
 #include "renderer/image/decode_webp.h"
 #include "renderer/image/encoded_image.h"
@@ -68,13 +68,6 @@ void append_attribute(Attributes& attributes, const OIIO::ParamValue& value, boo
   if (floats == 3) attributes.emplace_back(name, floats_of<3>(value));
   if (floats == 8) attributes.emplace_back(name, floats_of<8>(value));
   if (floats == 16) attributes.emplace_back(name, floats_of<16>(value));
-}
-
-bool has_extension(const std::filesystem::path& path, std::initializer_list<std::string_view> extensions) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
 // Of a PNG or a WebP, which are decoded here; empty: it is neither.

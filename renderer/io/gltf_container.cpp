@@ -1,7 +1,6 @@
 #include "renderer/io/gltf_container.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_extension.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -102,12 +102,7 @@ std::string_view without_blanks(std::string_view text) {
 
 }  // namespace
 
-bool writes_gltf_text(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".gltf";
-}
+bool writes_gltf_text(const std::filesystem::path& path) { return has_extension(path, {".gltf"}); }
 
 bool is_glb(std::string_view bytes) { return bytes.substr(0, 4) == "glTF"; }
 
