@@ -25,6 +25,8 @@ JsonObject bake_summary(const inverse::TransportCache& header, const inverse::Ba
           {"samples", header.settings.samples},
           {"bounces", header.settings.bounces},
           {"materials", header.settings.materials},
+          {"scene_fingerprint", header.scene_fingerprint},
+          {"receiver_fingerprint", header.receiver_fingerprint},
           {"indirect_relative_error", header.indirect_relative_error},
           {"shadow_rays", summary.shadow_rays},
           {"gather_rays", summary.gather_rays},

@@ -21,7 +21,8 @@ constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 [[noreturn]] void no_such_camera(const renderer::Scene& scene, const std::string& name) {
   std::vector<std::string> names;
   for (const renderer::Camera& camera : scene.cameras) names.push_back(camera.name);
-  const std::string expected = names.empty() ? "" : fmt::format("one of: {}", fmt::join(names, ", "));
+  const std::string expected =
+      names.empty() ? "a scene with cameras, or no name of one" : fmt::format("one of: {}", fmt::join(names, ", "));
   throw renderer::Error({scene.path, "cameras", fmt::format("no camera '{}'", name), expected});
 }
 
@@ -29,14 +30,21 @@ int rounded(double side) { return int(std::clamp(std::round(side), 1.0, double(k
 
 }  // namespace
 
-renderer::Camera choose_camera(const renderer::Scene& scene, const std::string& name, Session& session) {
+renderer::Camera choose_camera(const renderer::Scene& scene, const std::string& name, const FrameSize& size,
+                               Session& session) {
   if (name.empty() && !scene.cameras.empty()) return scene.cameras.front();
-  for (const renderer::Camera& camera : scene.cameras) {
-    if (camera.name == name) return camera;
+  const auto has_name = [&](const renderer::Camera& camera) { return camera.name == name; };
+  const auto named = std::find_if(scene.cameras.begin(), scene.cameras.end(), has_name);
+  if (named != scene.cameras.end()) {
+    const auto count = std::count_if(named, scene.cameras.end(), has_name);
+    if (count > 1)
+      session.warn(fmt::format("{}: {} cameras are named '{}': taking the first", scene.path, count, name));
+    return *named;
   }
   if (!name.empty()) no_such_camera(scene, name);
   session.warn(fmt::format("{}: has no camera: taking one that sees the whole scene", scene.path));
-  return renderer::default_camera(scene);
+  const std::array<int, 2> pixels = frame_size({}, size);
+  return renderer::default_camera(scene, float(pixels[0]) / float(pixels[1]));
 }
 
 std::array<int, 2> frame_size(const renderer::Camera& camera, const FrameSize& wanted) {

@@ -122,7 +122,7 @@ CommandRun add_bake(CLI::App& command) {
   add_common_options(command, options->common);
   set_examples(command,
                "  chiaro bake room.glb -o room.exr --on painted.glb --grid 12,8,12\n"
-               "  chiaro bake room.glb -o room.exr --region Ceiling --bounces 2\n"
+               "  chiaro bake room.glb -o room.exr --region 0.2,1.8,0.2,3.8,2.4,2.8 --bounces 2\n"
                "  chiaro bake room.glb -o part2.exr --shard 2/8 --resume --memory 4G");
   return [options] { return run_bake(*options); };
 }

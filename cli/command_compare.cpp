@@ -103,6 +103,15 @@ int compare_two_targets(const CompareCommand& options, Session& session) {
   return limit_exceeded(options.a, fmt::format("relative_l2 is {:.6g}", comparison.relative_l2), *options.fail_above);
 }
 
+// Where limits are asked for, they are exceeded.
+void require_something_finite(const CompareCommand& options, const ComparedFrames& frames,
+                              const renderer::ImageComparison& found) {
+  const std::size_t pixels = std::size_t(frames.a.width) * std::size_t(frames.a.height);
+  if (found.not_finite < pixels || options.fail_above || options.fail_above_flip) return;
+  throw renderer::Error(
+      {options.a, "", fmt::format("no pixel is finite both there and in {}", options.b), "pictures without NaN"});
+}
+
 int compare_two_frames(const CompareCommand& options, Session& session) {
   session.require_outputs({options.output});
   session.warn(given_for_nothing(*options.command, {"--target-scale"}, "between two frames"));
@@ -118,6 +127,7 @@ int compare_two_frames(const CompareCommand& options, Session& session) {
     session.warn(given_for_nothing(*options.command, {"--display", "--view", "--look", "--exposure"},
                                    "between two display pictures"));
   }
+  require_something_finite(options, frames, comparison.whole.image);
   if (const std::size_t bad = comparison.whole.image.not_finite; bad > 0) {
     session.warn(renderer::counted(bad, "pixel is not finite and left out", "pixels are not finite and left out"));
   }

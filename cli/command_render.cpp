@@ -110,7 +110,7 @@ int run_render(const RenderCommand& options) {
       stage, options.lights, in_config(options.transport.environment, options.frame.view.config), session);
   warn_of_darkness(stage, lights, session);
   warn_of_idle_options(options, session);
-  const renderer::Camera camera = choose_camera(*stage.scene, options.camera, session);
+  const renderer::Camera camera = choose_camera(*stage.scene, options.camera, options.frame.size, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                              {trace_options(transport_of(options), options.common), session.control()});
   const std::size_t held = save_outputs(options, camera, lights, frame);

@@ -22,6 +22,7 @@
 #include "inverse/transport/grid_by_error.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_lock.h"
 
 namespace chiaro::cli {
 namespace {
@@ -71,9 +72,9 @@ struct NamedCamera {
   std::string file_name;  // without extension
 };
 
-std::vector<NamedCamera> cameras_of(const LoadedStage& stage, Session& session) {
+std::vector<NamedCamera> cameras_of(const RunCommand& options, const LoadedStage& stage, Session& session) {
   std::vector<renderer::Camera> cameras = stage.scene->cameras;
-  if (cameras.empty()) cameras = {choose_camera(*stage.scene, "", session)};
+  if (cameras.empty()) cameras = {choose_camera(*stage.scene, "", options.frame.size, session)};
   std::vector<NamedCamera> named;
   std::set<std::string> used;
   for (renderer::Camera& camera : cameras) {
@@ -195,7 +196,7 @@ int run_run(RunCommand options) {
   require_copyable(options.scene, options.folder() / kLightsFile);
   const LoadedStage stage =
       load_stage(options.scene, options.choices.transport.load, options.choices.transport.materials, session);
-  const std::vector<NamedCamera> cameras = cameras_of(stage, session);
+  const std::vector<NamedCamera> cameras = cameras_of(options, stage, session);
   for (const NamedCamera& named : cameras) require_frame(named.camera, options.frame);
   session.require_outputs_in(options.folder(), picture_files(cameras));
   warn_of_scene_lights(stage, options.choices, session);
@@ -205,6 +206,7 @@ int run_run(RunCommand options) {
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);
   NewFolders folders;
   make_folders(options, folders);
+  const auto lock = renderer::FileLock::of_folder(options.folder());  // two runs would mix what they find
   JsonObject summary = wanted.pictures;
   if (problem.lights_in_place.empty()) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
@@ -212,9 +214,8 @@ int run_run(RunCommand options) {
   }
   const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());
-  require_unchanged(stage);
-  if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   save_found_lights(stage, result, options.folder() / kLightsFile, output_scene_options(stage, options.choices));
+  if (!is_target_file_alone(options.choices.target)) inverse::save_target(target, options.folder() / "target.glb");
   const inverse::Target found = found_target(target, result);
   inverse::save_target(found, options.folder() / "found.glb");
   const inverse::TargetComparison comparison = inverse::compare_targets(found, target);
@@ -233,6 +234,7 @@ int run_run(RunCommand options) {
                      .cameras = rendered.pages,
                      .settings = settings_of(options, stage, target),
                      .command = command_text(*options.command, "again"),
+                     .time_limited = options.choices.solve.time_limit > 0 || options.frame.time_limit > 0,
                      .summary = summary};
   renderer::write_file_atomically(options.folder() / "index.html", make_run_page(page));
   print_summary(session, options, wanted.text + solve_text(result), summary, rendered.pages.size());

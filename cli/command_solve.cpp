@@ -24,14 +24,6 @@ struct SolveCommand {
   std::string scene, cache, report, from, save_target, output;
 };
 
-// The report's folder is made after the inputs are found to be good.
-inverse::SolveOptions with_report(inverse::SolveOptions options, const std::string& folder, NewFolders& folders) {
-  if (folder.empty()) return options;
-  folders.make(folder);
-  options.report_folder = folder;
-  return options;
-}
-
 // A cache knows how many bounces it holds; the final check traces as many unless told otherwise.
 void use_cache(const SolveCommand& options, inverse::SolveProblem& problem) {
   if (options.cache.empty()) return;
@@ -93,16 +85,18 @@ int run_solve(SolveCommand options) {
   inverse::SolveProblem problem = solve_problem(stage, wanted.target, options.choices, options.common, session);
   use_cache(options, problem);
   NewFolders folders;
-  inverse::SolveOptions solving = with_report(solve_options(options.choices, options.common), options.report, folders);
+  if (!options.report.empty()) folders.make(options.report);
+  inverse::SolveOptions solving = solve_options(options.choices, options.common);
+  solving.keep_stages = !options.report.empty();
   if (!options.from.empty()) {
     solving.earlier = inverse::load_error_curve(options.from);
     solving.earlier_file = options.from;
   }
   const inverse::SolveResult result = inverse::solve(problem, solving, session.control());
   session.stop_if_interrupted();
-  require_unchanged(stage);
-  if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
   save_found_lights(stage, result, options.output, output_scene_options(stage, options.choices));
+  if (!options.save_target.empty()) inverse::save_target(wanted.target, options.save_target);
+  if (!options.report.empty()) inverse::write_report(*stage.scene, wanted.target, result, options.report);
   print_summary(session, options, wanted, result);
   return kDone;
 }
@@ -114,10 +108,12 @@ CommandRun add_solve(CLI::App& command) {
   options->command = &command;
   add_input(command, {"scene", "SCENE", "Scene (.glb, .gltf)"}, options->scene);
   add_output(command,
-             {"-o,--output", "LIGHTS.glb", "SCENE with the lights found; LIGHTS.json, the lights alone, beside it"},
+             {"-o,--output", "LIGHTS.glb",
+              "SCENE with the lights found in place of its own; LIGHTS.json, those found alone, beside it"},
              options->output, {".glb", ".gltf"});
   add_solve_options(command, options->choices);
-  add_view_options(command, options->choices.target.encoding.view);
+  add_view_options(command, options->choices.target.encoding.view,
+                   {"--exposure", "EV", "Exposure that painted pictures were made at, which is undone (default 0)"});
   add_hide_backs(command, options->choices.transport.materials);
   add_output(command, {"--save-target", "T.glb", "What the pictures and the target come to, as a target file"},
              options->save_target, {".glb", ".gltf"})

@@ -1,5 +1,7 @@
 #include "cli/compared_frames.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
@@ -58,12 +60,23 @@ void note_channels(const LoadedFrame& one, const LoadedFrame& other, std::vector
   }
 }
 
+// What is not finite in `from` is not in `to` either, though a view shows it as something.
+void keep_not_finite(const Image& from, Image& to) {
+  for (std::size_t i = 0; i < from.pixels.size(); ++i) {
+    if (!std::isfinite(from.pixels[i])) to.pixels[i] = from.pixels[i];
+  }
+}
+
 // The scene-linear one of two becomes what the view shows.
-void show_linear(LoadedFrame& one, const LoadedFrame& other, const ViewChoice& view, std::vector<std::string>& notes) {
+void show_linear(LoadedFrame& one, const LoadedFrame& other, const ViewChoice& view, ComparedFrames& frames) {
   if (!one.scene_linear() || other.scene_linear()) return;
-  one.colors = displayed(one.colors, view);
-  notes.push_back(fmt::format("{}: is scene-linear, {} is not: the view shows it, and display pictures are compared",
-                              one.name, other.name));
+  const ViewChoice exposed = exposed_for(one.colors, view);
+  Image shown = displayed(one.colors, exposed);
+  keep_not_finite(one.colors, shown);
+  one.colors = std::move(shown);
+  frames.exposure = exposed.view.exposure;
+  frames.notes.push_back(fmt::format(
+      "{}: is scene-linear, {} is not: the view shows it, and display pictures are compared", one.name, other.name));
 }
 
 void match_sizes(LoadedFrame& a, const LoadedFrame& b, bool resize, std::vector<std::string>& notes) {
@@ -85,8 +98,8 @@ ComparedFrames load_compared_frames(const std::string& a, const std::string& b, 
   match_sizes(frame_a, frame_b, resize, frames.notes);
   note_channels(frame_a, frame_b, frames.notes);
   note_channels(frame_b, frame_a, frames.notes);
-  show_linear(frame_a, frame_b, view, frames.notes);
-  show_linear(frame_b, frame_a, view, frames.notes);
+  show_linear(frame_a, frame_b, view, frames);
+  show_linear(frame_b, frame_a, view, frames);
   frames.scene_linear = frame_a.scene_linear() && frame_b.scene_linear();
   frames.by_view = frame_a.scene_linear() || frame_b.scene_linear();
   frames.a = std::move(frame_a.colors);

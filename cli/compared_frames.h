@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct ComparedFrames {
   renderer::Image a, b;
   bool scene_linear = false;
   bool by_view = false;            // either was scene-linear, so that the view decides what is seen of it
+  std::optional<float> exposure;   // EV that the view showed one of them at, which is scene-linear
   std::vector<std::string> notes;  // what they differ in besides their pixels, and what was done about it
 };
 

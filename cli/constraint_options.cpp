@@ -35,6 +35,11 @@ std::string option_of(std::string key) {
   return "--" + key;
 }
 
+// The option, or the file and the key in it.
+std::string name_as_given(const ConstraintOptions& options, const std::string& key) {
+  return was_given(*options.command, option_of(key)) ? option_of(key) : fmt::format("{}: {}", options.file, key);
+}
+
 }  // namespace
 
 void add_constraint_options(CLI::App& command, ConstraintOptions& options) {
@@ -69,19 +74,22 @@ inverse::LightConstraints choose_constraints(const ConstraintOptions& options, c
   inverse::LightConstraints constraints = options.given;
   constraints.regions = grid.regions;
   if (!options.file.empty()) constraints = merged(constraints, inverse::load_constraints(options.file));
-  const auto name = [&](const std::string& key) {
-    return was_given(*options.command, option_of(key)) ? option_of(key) : fmt::format("{}: {}", options.file, key);
-  };
+  const auto name = [&](const std::string& key) { return name_as_given(options, key); };
   if (const auto contradiction = find_contradiction(constraints, name)) throw UsageError(contradiction->reason);
   return constraints;
 }
 
-void require_known_to(inverse::SolveMethod method, const inverse::LightConstraints& constraints) {
-  const bool others = constraints.light_distance || constraints.max_intensity || constraints.kelvin ||
-                      constraints.one_color || constraints.keep_positions;
-  if (method == inverse::SolveMethod::kJoint || !others) return;
-  throw UsageError(
-      "--method thesis knows no constraint of distances between lights, of intensities or of colours (expected joint)");
+void require_known_to(inverse::SolveMethod method, const inverse::LightConstraints& constraints,
+                      const ConstraintOptions& options) {
+  if (method == inverse::SolveMethod::kJoint) return;
+  const std::pair<const char*, bool> unknown[] = {{"light_distance", constraints.light_distance.has_value()},
+                                                  {"max_intensity", constraints.max_intensity.has_value()},
+                                                  {"kelvin", constraints.kelvin.has_value()},
+                                                  {"one_color", constraints.one_color},
+                                                  {"keep_positions", constraints.keep_positions}};
+  for (const auto& [key, given] : unknown) {
+    if (given) throw UsageError(name_as_given(options, key) + ": --method thesis does not know it (expected joint)");
+  }
 }
 
 inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::LightConstraints& constraints) {

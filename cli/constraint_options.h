@@ -26,7 +26,8 @@ void add_constraint_options(CLI::App& command, ConstraintOptions& options);
 inverse::LightConstraints choose_constraints(const ConstraintOptions& options, const GridOptions& grid);
 
 // UsageError where the method does not know them.
-void require_known_to(inverse::SolveMethod method, const inverse::LightConstraints& constraints);
+void require_known_to(inverse::SolveMethod method, const inverse::LightConstraints& constraints,
+                      const ConstraintOptions& options);
 
 inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::LightConstraints& constraints);
 // Before the work: Error, as a solve would end with it, where no light of the grid is near a place that the rules

@@ -82,6 +82,7 @@ FrameComparison compare_frames(const ComparedFrames& frames, const FrameComparis
                                const renderer::Control& control) {
   FrameComparison found;
   found.scene_linear = frames.scene_linear;
+  found.exposure = frames.exposure;
   if (options.picture || !options.no_flip) {
     const ViewChoice view = frames.scene_linear ? exposed_for(frames.b, options.view) : options.view;
     if (frames.scene_linear) found.exposure = view.view.exposure;

@@ -15,7 +15,7 @@ using renderer::Mat4f;
 
 constexpr float kDegreesPerRadian = 180 / renderer::kPi;
 
-// glTF 2.0 specification, 3.10.3: finite and infinite perspective projection.
+// The camera looks along −z. glTF 2.0 specification, 3.10.3: finite and infinite perspective projection.
 Mat4f perspective(const renderer::Camera& camera, double aspect) {
   Mat4f p;
   const double cotangent = 1 / std::tan(0.5 * camera.vertical_fov);
@@ -41,6 +41,20 @@ Mat4f orthographic(const renderer::Camera& camera, double aspect) {
     p(2, 3) = float((far + near) / (near - far));
   }
   return p;
+}
+
+Mat4f diagonal(float x, float y, float z) {
+  Mat4f matrix;
+  matrix(0, 0) = x, matrix(1, 1) = y, matrix(2, 2) = z;
+  return matrix;
+}
+
+// From the cube of glTF, −1 … 1 and y up, to OpenEXR's coordinates: (0, 0) is the frame's upper left corner and (1, 1)
+// its lower right one.
+Mat4f ndc_from_clip() {
+  Mat4f matrix = diagonal(0.5F, -0.5F, 1);
+  matrix(0, 3) = matrix(1, 3) = 0.5F;
+  return matrix;
 }
 
 // A scale above a camera does not change its picture.
@@ -73,7 +87,8 @@ void add_choices(renderer::Attributes& attributes, const FrameOrigin& origin) {
 }  // namespace
 
 Mat4f ndc_from_camera(const renderer::Camera& camera, double frame_aspect_ratio) {
-  return camera.orthographic ? orthographic(camera, frame_aspect_ratio) : perspective(camera, frame_aspect_ratio);
+  return ndc_from_clip() *
+         (camera.orthographic ? orthographic(camera, frame_aspect_ratio) : perspective(camera, frame_aspect_ratio));
 }
 
 std::array<float, 16> row_vector_matrix(const Mat4f& matrix) {
@@ -87,7 +102,7 @@ renderer::Attributes frame_attributes(const renderer::Camera& camera, double fra
   const Mat4f ndc_from_world = ndc_from_camera(camera, frame_aspect_ratio) * camera_from_world;
   renderer::Attributes attributes{
       {"whiteLuminance", 1.0F},
-      {"worldToCamera", row_vector_matrix(camera_from_world)},
+      {"worldToCamera", row_vector_matrix(diagonal(1, 1, -1) * camera_from_world)},  // OpenEXR's looks along +z
       {"worldToNDC", row_vector_matrix(ndc_from_world)},
       {"chiaro:version", program_version()},
       {"chiaro:units", std::string("cd/m^2")},
@@ -97,6 +112,10 @@ renderer::Attributes frame_attributes(const renderer::Camera& camera, double fra
       {"chiaro:bounces", origin.bounces},
       {"chiaro:seed", fmt::format("{}", origin.seed)},
   };
+  if (!camera.orthographic) {
+    const double width = 2 * std::tan(0.5 * camera.vertical_fov) * frame_aspect_ratio;  // a metre away
+    attributes.emplace_back("screenWindowWidth", float(width));
+  }
   add_choices(attributes, origin);
   return attributes;
 }

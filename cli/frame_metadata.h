@@ -30,13 +30,15 @@ struct FrameOrigin {
 // CIE xy of Rec.709's red, green, blue and D65.
 inline constexpr std::array<float, 8> kRec709Chromaticities{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
 
-// Projection of camera space (looking along -Z) to x, y, z in -1..1, as glTF defines it for this frame's shape.
+// Projection of glTF's camera space (looking along -Z) to OpenEXR's normalized device coordinates: x from 0 to 1 to the
+// right, y from 0 to 1 down the frame, z from -1 to 1 as glTF defines it.
 renderer::Mat4f ndc_from_camera(const renderer::Camera& camera, double frame_aspect_ratio);
 
 // In OpenEXR's row-vector convention: the transpose of a column-vector matrix.
 std::array<float, 16> row_vector_matrix(const renderer::Mat4f& matrix);
 
-// worldToCamera, worldToNDC, whiteLuminance, and ours under "chiaro:". Chromaticities are the caller's.
+// worldToCamera and worldToNDC as OpenEXR defines them, screenWindowWidth, whiteLuminance, and ours under "chiaro:".
+// Chromaticities are the caller's.
 renderer::Attributes frame_attributes(const renderer::Camera& camera, double frame_aspect_ratio,
                                       const FrameOrigin& origin);
 

@@ -54,8 +54,8 @@ void add_chromaticities(renderer::Attributes& attributes, const FrameOptions& op
     attributes.emplace_back("chromaticities", kRec709Chromaticities);
     return;
   }
-  attributes.emplace_back(renderer::kColorSpaceAttribute, options.output_space);
   const auto config = renderer::find_ocio_config(options.view.config);
+  attributes.emplace_back(renderer::kColorSpaceAttribute, renderer::name_of_space(config, options.output_space));
   if (const auto known = renderer::chromaticities_of(config, options.output_space)) {
     attributes.emplace_back("chromaticities", *known);
   }

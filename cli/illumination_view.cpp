@@ -84,7 +84,7 @@ void require_picture(const IlluminationPictureOptions& options) {
 std::optional<PictureCamera> choose_picture_camera(const IlluminationPictureOptions& options,
                                                    const renderer::Scene& scene, Session& session) {
   if (options.file.empty()) return std::nullopt;
-  const renderer::Camera camera = choose_camera(scene, options.camera, session);
+  const renderer::Camera camera = choose_camera(scene, options.camera, options.size, session);
   const auto [width, height] = frame_size(camera, options.size);
   return PictureCamera{camera, width, height};
 }

@@ -5,6 +5,7 @@
 
 #include "cli/inspect.h"
 #include "inverse/target/paint.h"
+#include "renderer/core/counted.h"
 #include "renderer/io/light_file.h"
 
 namespace chiaro::cli {
@@ -49,6 +50,13 @@ Inspection inspect_light_file(const std::string& file) {
   return inspection;
 }
 
+// Factors of what is there already have no unit, and what is erased has no colour.
+std::string text_of_color(const inverse::Stroke& stroke) {
+  if (stroke.mode == inverse::BrushMode::kErase) return "";
+  const char* unit = stroke.mode == inverse::BrushMode::kMultiply ? "" : " cd/m²";
+  return fmt::format(", {}{}", text_of_vector(stroke.color), unit);
+}
+
 Inspection inspect_strokes(const std::string& file) {
   const inverse::Strokes strokes = inverse::load_strokes(file);
   Inspection inspection = start_inspection("strokes", file);
@@ -59,9 +67,9 @@ Inspection inspect_strokes(const std::string& file) {
     const std::string mode = name_of_mode(stroke.mode);
     list.emplace_back(
         JsonObject{{"mode", mode}, {"color", stroke.color}, {"radius", stroke.radius}, {"points", stroke.path.size()}});
-    inspection.rows.emplace_back(
-        "stroke", fmt::format("{}, {} cd/m², radius {:.4g} m, {} points", mode, text_of_vector(stroke.color),
-                              stroke.radius, stroke.path.size()));
+    inspection.rows.emplace_back("stroke",
+                                 fmt::format("{}, radius {:.4g} m, {}", mode + text_of_color(stroke), stroke.radius,
+                                             renderer::counted(stroke.path.size(), "point", "points")));
   }
   inspection.summary.emplace_back("strokes", list);
   return inspection;

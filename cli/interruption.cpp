@@ -29,6 +29,10 @@ void install_signal_handlers() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A terminal that closes, unless nohup made it nobody's concern.
+  struct sigaction inherited = {};
+  sigaction(SIGHUP, nullptr, &inherited);
+  if (inherited.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   // A file that may grow no further is as a full disk: writing it fails, and says so.
   action.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &action, nullptr);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace chiaro::cli {
@@ -42,9 +43,21 @@ double control_group_limit(const std::filesystem::path& list, const std::filesys
   return least;
 }
 
+// As `ulimit -v` and batch systems set them.
+double process_limit() {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
+    rlimit limit = {};
+    if (::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+      least = std::min(least, double(limit.rlim_cur));
+    }
+  }
+  return least;
+}
+
 double memory_bytes() {
   const double installed = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
-  return std::min(installed, control_group_limit("/proc/self/cgroup", "/sys/fs/cgroup"));
+  return std::min({installed, control_group_limit("/proc/self/cgroup", "/sys/fs/cgroup"), process_limit()});
 }
 
 double memory_left(std::optional<double> limit) {

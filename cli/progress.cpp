@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kBarWidth = 24;
 constexpr double kSecondsBetweenDrawings = 0.1;
+constexpr double kAnew = 0.5;  // of how far a stage had come: a fraction below is of another run of it
 
 int terminal_columns() {
   winsize size = {};
@@ -48,13 +49,21 @@ ProgressBar::ProgressBar(bool wanted) : shown_(wanted && ::isatty(STDERR_FILENO)
 
 ProgressBar::~ProgressBar() { clear(); }
 
+bool StageProgress::update(std::string_view stage, double fraction, Clock::time_point now) {
+  const bool begins = stage != stage_ || fraction < kAnew * farthest_;
+  if (begins) {
+    stage_ = stage;
+    begun_ = now;
+    farthest_ = 0;
+  }
+  farthest_ = std::max(farthest_, fraction);
+  return begins;
+}
+
 void ProgressBar::update(std::string_view stage, double fraction) {
   if (!shown_) return;
   const Clock::time_point now = Clock::now();
-  const bool new_stage = stage != stage_;
-  if (new_stage) {
-    stage_ = stage;
-    stage_start_ = now;
+  if (progress_.update(stage, fraction, now)) {
     noise_ = 0;
   } else if (seconds_between(last_drawn_, now) < kSecondsBetweenDrawings) {
     return;
@@ -63,7 +72,7 @@ void ProgressBar::update(std::string_view stage, double fraction) {
   drawn_ = true;
   const std::string noise = noise_text(noise_);
   const int columns = terminal_columns() - int(noise.size());
-  const std::string line = progress_line(stage, fraction, seconds_between(stage_start_, now), columns) + noise;
+  const std::string line = progress_line(stage, fraction, seconds_between(progress_.begun(), now), columns) + noise;
   std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
   std::fflush(stderr);
 }

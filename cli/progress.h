@@ -13,6 +13,21 @@ std::string progress_line(std::string_view stage, double fraction, double second
 // How noisy the result is so far, after the line.
 std::string noise_text(double relative_standard_error);
 
+// When the stage that runs has begun. Stages of one name run several times in a row, each from the start.
+class StageProgress {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // Whether a stage begins by this.
+  bool update(std::string_view stage, double fraction, Clock::time_point now);
+  Clock::time_point begun() const { return begun_; }
+
+ private:
+  std::string stage_;
+  double farthest_ = 0;  // that the stage has come
+  Clock::time_point begun_;
+};
+
 // A progress bar on standard error, redrawn in place.
 class ProgressBar {
  public:
@@ -29,12 +44,12 @@ class ProgressBar {
   void clear();
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = StageProgress::Clock;
   bool shown_;
   bool drawn_ = false;
-  std::string stage_;
+  StageProgress progress_;
   double noise_ = 0;  // 0: not known
-  Clock::time_point stage_start_, last_drawn_;
+  Clock::time_point last_drawn_;
 };
 
 }  // namespace chiaro::cli

@@ -70,6 +70,7 @@ std::string part(const RunPage& page, std::string_view name) {
   if (name == "lights") return light_rows(page);
   if (name == "settings") return settings(page);
   if (name == "command") return html_escaped(page.command);
+  if (name == "to_the_bit") return page.time_limited ? ", as far as its time limit lets it come" : " to the bit";
   if (name == "summary") return html_escaped(json_text(without_seconds(page.summary)));
   const std::string_view file = embedded_file(name);
   CHIARO_CHECK(!file.empty());

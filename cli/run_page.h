@@ -30,6 +30,7 @@ struct RunPage {
   std::vector<PageCamera> cameras;
   std::vector<TextRow> settings;
   std::string command;
+  bool time_limited = false;  // which makes no two runs the same
   JsonObject summary;
 };
 

@@ -29,11 +29,20 @@ std::uintmax_t size_of_referred_files(const std::filesystem::path& scene) {
   return size;
 }
 
+// The file and those that it refers to, as they are now.
+std::vector<std::pair<std::filesystem::path, FileVersion>> versions_of_files(const std::filesystem::path& scene) {
+  std::vector<std::pair<std::filesystem::path, FileVersion>> files{{scene, version_of(scene)}};
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(scene, unknown)) return files;
+  for (const std::filesystem::path& file : renderer::referred_files(scene)) files.emplace_back(file, version_of(file));
+  return files;
+}
+
 }  // namespace
 
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session) {
-  const FileVersion version = version_of(path);
+  auto files = versions_of_files(path);
   renderer::LoadedScene loaded = renderer::load_gltf(path, load, session.control());
   session.warn(loaded.warnings);
   session.stop_if_interrupted();
@@ -41,7 +50,7 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
     throw renderer::Error({path, "", "has no triangles", "a scene with surfaces"});
   }
   LoadedStage stage;
-  stage.file = version;
+  stage.files = std::move(files);
   auto scene = std::make_unique<renderer::Scene>(
       renderer::with_materials(std::move(loaded.scene), material_override(materials)));
   renderer::make_mip_maps(*scene);
@@ -69,9 +78,10 @@ void require_copyable(const std::string& scene, const std::filesystem::path& cop
 }
 
 void require_unchanged(const LoadedStage& stage) {
-  const std::string& file = stage.scene->path;
-  if (version_of(file) == stage.file) return;
-  throw renderer::Error({file, "", "was changed while its lights were sought", "the scene as it was"});
+  for (const auto& [file, version] : stage.files) {
+    if (version_of(file) == version) continue;
+    throw renderer::Error({file.string(), "", "was changed while its lights were sought", "the scene as it was"});
+  }
 }
 
 renderer::Lights choose_lights(const LoadedStage& stage, const std::string& light_file,

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/environment_options.h"
 #include "cli/file_version.h"
@@ -21,7 +23,7 @@ struct LoadedStage {
   renderer::Lights lights;       // of the scene file
   std::vector<int> light_nodes;  // as LoadedScene's
   std::unique_ptr<const renderer::RayTracer> tracer;
-  FileVersion file;  // that it was read from
+  std::vector<std::pair<std::filesystem::path, FileVersion>> files;  // that it was read from
 };
 
 // Loads a glTF scene, replaces its materials, passes its warnings on, and builds the ray tracer. Error where it has no
@@ -33,7 +35,8 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
 // read but once, or one whose files do not fit into a .glb.
 void require_copyable(const std::string& scene, const std::filesystem::path& copy);
 
-// Error where the file is another than was loaded: what is made of it then is not of this scene.
+// Error where the file, or one that it refers to, is another than was loaded: what is made of it then is not of this
+// scene.
 void require_unchanged(const LoadedStage& stage);
 
 // The lights of the file if one is named, else those of the scene; with the environment that the options ask for, or

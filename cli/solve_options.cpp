@@ -65,7 +65,8 @@ void add_method_options(CLI::App& command, inverse::SolveOptions& solve) {
             {"--verification-samples", "N",
              "Paths per receiver of the final check, by which the lights settle (default: until their noise is that "
              "of the target, of up to seven lights twice that if no more than 3 %, or little beside what the lights "
-             "leave; at most 16 to 1024, by the number of receivers)"},
+             "leave; at most 16 to 1024, by the number of receivers). Below 256, and below 2 million in all, they stay "
+             "where the search left them"},
             solve.verification_samples, {1, 1 << 24});
 }
 
@@ -90,7 +91,7 @@ renderer::Lights lights_in_place(const LoadedStage& stage, const SolveChoices& c
 
 void settle_constraints(SolveChoices& choices) {
   choices.constraints = choose_constraints(choices.constraint_options, choices.grid);
-  require_known_to(choices.solve.method, choices.constraints);
+  require_known_to(choices.solve.method, choices.constraints, choices.constraint_options);
   if (choices.solve.method == inverse::SolveMethod::kThesis && choices.solve.objective != inverse::Objective::kL2) {
     throw UsageError("--objective: --method thesis knows l2 alone (expected joint)");
   }
@@ -147,8 +148,16 @@ void save_found_lights(const LoadedStage& stage, const inverse::SolveResult& res
                        const renderer::AddLightsOptions& options) {
   renderer::Lights lights;
   for (const inverse::FoundLight& found : result.lights) lights.emplace_back(found.light);
-  renderer::save_gltf_with_lights(stage.scene->path, lights, output, options);
-  renderer::save_lights(lights, beside(output, ".json"));
+  const std::filesystem::path alone = beside(output, ".json");
+  renderer::save_lights(lights, alone);
+  try {
+    require_unchanged(stage);
+    renderer::save_gltf_with_lights(stage.scene->path, lights, output, options);
+  } catch (const renderer::Error& error) {
+    const auto& [file, place, problem, expected] = error.parts();
+    throw renderer::Error(
+        {file, place, fmt::format("{}; the lights found are in {}", problem, alone.string()), expected});
+  }
 }
 
 }  // namespace chiaro::cli

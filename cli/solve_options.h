@@ -39,7 +39,8 @@ void warn_of_scene_lights(const LoadedStage& stage, const SolveChoices& choices,
 // How the scene with the lights found is made of the scene.
 renderer::AddLightsOptions output_scene_options(const LoadedStage& stage, const SolveChoices& choices);
 
-// LIGHTS.glb, the scene with the lights found, and LIGHTS.json beside it, the lights alone.
+// LIGHTS.json, the lights alone, and then LIGHTS.glb, the scene with them, which more can keep from being written: an
+// Error of that says where the lights are. One is also that the scene's files are others than were loaded.
 void save_found_lights(const LoadedStage& stage, const inverse::SolveResult& result, const std::string& output,
                        const renderer::AddLightsOptions& options);
 

@@ -177,8 +177,8 @@ class TargetLoading {
   inverse::Target from_file() const { return load_target_on(stage_, choices_.file, choices_.scale, session_); }
 
   void read_picture(const NamedFile& image) {
-    const renderer::Camera camera = choose_camera(*stage_.scene, image.name, session_);
     PaintedPicture picture = load_painted_picture(image.file, choices_.encoding);
+    const renderer::Camera camera = choose_camera(*stage_.scene, image.name, {picture.width, picture.height}, session_);
     apply_masks(choices_, image, picture);
     warn_of_picture(image, picture, camera, session_);
     inverse::FrameValues read = inverse::values_of_frame(

@@ -25,7 +25,7 @@ void parse_exposure(const std::string& text, ViewChoice& choice) {
 
 }  // namespace
 
-void add_view_options(CLI::App& command, ViewChoice& choice) {
+void add_view_options(CLI::App& command, ViewChoice& choice, const OptionText& exposure) {
   naming_inputs(add_parsed(command, {"--ocio", "CONFIG", "OpenColorIO config (default: $OCIO, or the one installed)"},
                            [&choice](const std::string& text) {
                              if (text.empty()) throw UsageError("is empty (expected an OpenColorIO config)");
@@ -34,8 +34,7 @@ void add_view_options(CLI::App& command, ViewChoice& choice) {
   add_text(command, {"--display", "NAME", "Display of the config (default: its first)"}, choice.view.display);
   add_text(command, {"--view", "NAME", "View of the display (default: its first)"}, choice.view.view);
   add_text(command, {"--look", "NAME", "Look in place of the view's own, or none"}, choice.view.look);
-  add_parsed(command, {"--exposure", "EV|auto", "Exposure of display pictures (default 0)"},
-             [&choice](const std::string& text) { parse_exposure(text, choice); });
+  add_parsed(command, exposure, [&choice](const std::string& text) { parse_exposure(text, choice); });
 }
 
 std::vector<std::string> idle_view_options(const CLI::App& command, const std::vector<std::string>& shown_by,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/add_options.h"
 #include "renderer/core/vec.h"
 #include "renderer/image/color_management.h"
 #include "renderer/image/image.h"
@@ -22,7 +23,9 @@ struct ViewChoice {
   bool auto_exposure = false;
 };
 
-void add_view_options(CLI::App& command, ViewChoice& choice);
+void add_view_options(CLI::App& command, ViewChoice& choice,
+                      const OptionText& exposure = {"--exposure", "EV|auto",
+                                                    "Exposure of display pictures (default 0)"});
 
 // A warning for each of them that was given and does nothing: none of `shown_by` was given, by which the view shows
 // something, nor for --ocio one of `converted_by`, which need its colour spaces alone.

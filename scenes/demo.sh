@@ -64,7 +64,7 @@ cat <<END
 
 Done in $SECONDS s, $build_seconds s of them to install and build. Open in out/demo:
   before.png, after.png   the scene under the true and under the found lights (before.exr, after.exr: OpenEXR, cd/m²)
-  DIFF.png                after | before | eight times their difference
+  DIFF.png                after, before, eight times their difference, and FLIP
   found.glb, found.json   the scene with the found lights in it (for any glTF program), and the lights alone
   wanted.glb, got.glb     the light on the surfaces, wanted and reached, as vertex colours
   cache.exr               the transport cache (chiaro inspect out/demo/cache.exr)

@@ -42,8 +42,9 @@ LightSet read_set(const JsonField& field) {
   return set;
 }
 
+// The summary of a run has that of its solve in it.
 std::vector<LightSet> read_curve(const JsonField& root) {
-  const JsonField curve = required(root, "error_curve");
+  const JsonField curve = required(root.has("solve") ? root.member("solve") : root, "error_curve");
   if (curve.value.is_array() && curve.value.empty()) {
     curve.fail("has no sets of lights", "the summary of a solve with --method joint, which finds one of every size");
   }

@@ -9,9 +9,9 @@
 namespace chiaro::inverse {
 namespace {
 
-// A picture on the receivers: any glTF program shows its colours.
-void save_values(const Receivers& receivers, const std::vector<Vec3f>& values, const std::filesystem::path& path) {
-  save_target({receivers, values, std::vector<float>(values.size(), 1.0F), {}}, path);
+// A picture on the target's receivers, with its weights: any glTF program shows its colours.
+void save_values(const Target& target, std::vector<Vec3f> values, const std::filesystem::path& path) {
+  save_target({target.receivers, std::move(values), target.weight, {}}, path);
 }
 
 std::vector<Vec3f> importance_colors(const Importance& importance) {
@@ -40,17 +40,19 @@ const std::vector<std::string>& report_files() {
   return kFiles;
 }
 
-void write_report(const SolveTrace& trace, const std::filesystem::path& folder) {
+void write_report(const renderer::Scene& scene, const Target& target, const SolveResult& result,
+                  const std::filesystem::path& folder) {
+  CHIARO_CHECK(result.found_by_stages != nullptr);
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed || !std::filesystem::is_directory(folder)) {
     throw renderer::Error({folder.string(), "", "cannot be made", "a folder for the report"});
   }
-  const Receivers& receivers = trace.target.receivers;
-  save_values(receivers, importance_colors(trace.importance), folder / "importance.glb");
-  save_values(receivers, trace.target.illumination, folder / "target.glb");
-  save_values(receivers, trace.result.illumination, folder / "found.glb");
-  save_values(receivers, difference_times_8(trace.target, trace.result.illumination), folder / "difference_x8.glb");
+  const SolveTrace trace{scene, target, *result.found_by_stages, result};
+  save_values(target, importance_colors(trace.stages.importance), folder / "importance.glb");
+  save_target(target, folder / "target.glb");
+  save_values(target, result.illumination, folder / "found.glb");
+  save_values(target, difference_times_8(target, result.illumination), folder / "difference_x8.glb");
   renderer::write_file_atomically(folder / "stages.json", stages_json(trace));
   renderer::write_file_atomically(folder / "report.html", make_report_page(page_json(trace)));
 }

@@ -9,23 +9,28 @@
 
 namespace chiaro::inverse {
 
+struct SolveStages {
+  Importance importance;
+  LightGrid grid;
+  LightDistribution distribution;
+  LightEstimates clusters;
+  LightTree tree;
+  std::vector<int> cut;  // nodes of the tree
+  LightEstimates found;
+};
+
 struct SolveTrace {
   const renderer::Scene& scene;
   const Target& target;
-  const Importance& importance;
-  const LightGrid& grid;
-  const LightDistribution& distribution;
-  const LightEstimates& clusters;
-  const LightTree& tree;
-  const std::vector<int>& cut;  // nodes of the tree
-  const LightEstimates& found;
+  const SolveStages& stages;
   const SolveResult& result;
 };
 
 // Into `folder`, made if it is missing: report.html, a page to look at in a browser; importance.glb (R geometry,
 // G illumination, B chosen), target.glb, found.glb, difference_x8.glb; and stages.json with the lights and the figures
-// of every stage. Error where the folder cannot be made.
-void write_report(const SolveTrace& trace, const std::filesystem::path& folder);
+// of every stage. Of a result whose stages were kept. Error where the folder cannot be made.
+void write_report(const renderer::Scene& scene, const Target& target, const SolveResult& result,
+                  const std::filesystem::path& folder);
 
 // The names of these files.
 const std::vector<std::string>& report_files();

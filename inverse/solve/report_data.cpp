@@ -30,13 +30,13 @@ json lights_json(const LightEstimates& lights) {
 
 json tree_json(const SolveTrace& trace) {
   json nodes = json::array();
-  for (const auto& node : trace.tree.tree.nodes) {
+  for (const auto& node : trace.stages.tree.tree.nodes) {
     nodes.push_back({{"left", node.left}, {"right", node.right}, {"distance", node.distance}});
   }
-  return {{"leaves", trace.tree.tree.leaf_count},
+  return {{"leaves", trace.stages.tree.tree.leaf_count},
           {"nodes", nodes},
-          {"representatives", lights_json(trace.tree.representatives)},
-          {"cut", trace.cut}};
+          {"representatives", lights_json(trace.stages.tree.representatives)},
+          {"cut", trace.stages.cut}};
 }
 
 json curve_json(const std::vector<LightSet>& curve) {
@@ -58,11 +58,11 @@ json stage_json(const StageReport& stage) {
 json stages_of(const SolveTrace& trace) {
   json figures = json::array();
   for (const StageReport& stage : trace.result.stages) figures.push_back(stage_json(stage));
-  return {{"coarse", lights_json(trace.distribution.rounds[0].lights)},
-          {"fine", lights_json(trace.distribution.rounds[1].lights)},
-          {"clusters", lights_json(trace.clusters)},
+  return {{"coarse", lights_json(trace.stages.distribution.rounds[0].lights)},
+          {"fine", lights_json(trace.stages.distribution.rounds[1].lights)},
+          {"clusters", lights_json(trace.stages.clusters)},
           {"tree", tree_json(trace)},
-          {"found", lights_json(trace.found)},
+          {"found", lights_json(trace.stages.found)},
           {"error_curve", curve_json(trace.result.error_curve)},
           {"stages", figures}};
 }
@@ -130,10 +130,10 @@ json receivers_json(const SolveTrace& trace) {
           {"target", halves_json(trace.target.illumination)},
           {"difference", halves_json(difference(trace.result.illumination, trace.target.illumination))},
           {"weight", bytes_json(trace.target.weight)},
-          {"importance", bytes_json(trace.importance.total)},
-          {"geometry", bytes_json(trace.importance.geometry)},
-          {"laplacian", bytes_json(trace.importance.illumination)},
-          {"chosen", pack_indices(trace.importance.chosen)}};
+          {"importance", bytes_json(trace.stages.importance.total)},
+          {"geometry", bytes_json(trace.stages.importance.geometry)},
+          {"laplacian", bytes_json(trace.stages.importance.illumination)},
+          {"chosen", pack_indices(trace.stages.importance.chosen)}};
 }
 
 json cameras_json(const std::vector<renderer::Camera>& cameras) {
@@ -163,7 +163,7 @@ std::string page_json(const SolveTrace& trace) {
   data["scene"] = std::filesystem::path(trace.scene.path).filename().string();
   data["cameras"] = cameras_json(trace.scene.cameras);
   data["receivers"] = receivers_json(trace);
-  data["grid"] = pack_floats(trace.grid.positions);
+  data["grid"] = pack_floats(trace.stages.grid.positions);
   data["result"] = result_json(trace.result);
   return without_less_than(data.dump(-1, ' ', false, json::error_handler_t::replace));
 }

@@ -372,12 +372,10 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   judge(problem, options, std::move(by_trace.traced), result);
   leave_unknown_at_border(problem, result);
   result.stages = clock.stages();
-  if (!options.report_folder.empty()) {
-    write_report({problem.tracer.scene(), problem.target, importance, searched->transport.cache.grid,
-                  searched->distribution, searched->clusters, searched->tree, optimum.cut, lights, result},
-                 options.report_folder);
-    clock.finish("report", {});
-    result.stages = clock.stages();
+  if (options.keep_stages) {
+    result.found_by_stages =
+        std::make_shared<SolveStages>(SolveStages{importance, searched->transport.cache.grid, searched->distribution,
+                                                  searched->clusters, searched->tree, optimum.cut, lights});
   }
   result.total_seconds = clock.total();
   return result;

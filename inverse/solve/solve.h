@@ -2,6 +2,7 @@
 // The main job: the lights that produce a target.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,9 +41,9 @@ struct SolveOptions {
   int verification_samples =
       0;  // paths per receiver of the final, fresh evaluation; 0: as trace_for_verification() chooses
   std::uint64_t seed = 0;
-  std::vector<LightSet> earlier;        // of another solve of the same: nothing is searched, they are only refined …
-  std::filesystem::path earlier_file;   // … and come from there
-  std::filesystem::path report_folder;  // empty: none; what each stage found is written there (report.h)
+  std::vector<LightSet> earlier;       // of another solve of the same: nothing is searched, they are only refined …
+  std::filesystem::path earlier_file;  // … and come from there
+  bool keep_stages = false;            // what each stage found, for a report
 };
 
 struct FoundLight {
@@ -66,6 +67,8 @@ struct StageReport {
   std::vector<std::pair<std::string, double>> figures;
 };
 
+struct SolveStages;  // report.h
+
 struct SolveResult {
   std::vector<FoundLight> lights;            // brightest contribution first
   double relative_l2 = 0;                    // traced afresh, all receivers, without the noise of that trace
@@ -85,6 +88,7 @@ struct SolveResult {
   std::vector<std::pair<int, int>>
       not_told_apart;               // of lights, by their numbers from 1: of which only the sum is known
   std::vector<Vec3f> illumination;  // of the found lights and the fixed part, traced afresh, per receiver
+  std::shared_ptr<const SolveStages> found_by_stages;  // none unless they were to be kept
 };
 
 struct SolveProblem {

@@ -4,6 +4,7 @@
 
 #include "inverse/target/receiver_lookup.h"
 #include "renderer/core/error.h"
+#include "renderer/core/sampler.h"
 #include "renderer/trace/camera_rays.h"
 #include "renderer/trace/surface_point.h"
 
@@ -21,7 +22,10 @@ class IlluminationView {
   void write_pixel(int x, int y, float* pixel) const {
     for (int row = 0; row < kGrid; ++row) {
       for (int column = 0; column < kGrid; ++column) {
-        const auto value = seen({float(x) + (float(column) + 0.5F) / kGrid, float(y) + (float(row) + 0.5F) / kGrid});
+        const std::uint32_t sample = std::uint32_t(kGrid * row + column);
+        const auto value =
+            seen({float(x) + (float(column) + 0.5F) / kGrid, float(y) + (float(row) + 0.5F) / kGrid},
+                 renderer::hash_combine(renderer::hash_combine(std::uint32_t(x), std::uint32_t(y)), sample));
         if (!value) continue;
         for (int c = 0; c < 3; ++c) pixel[c] += (*value)[c] / (kGrid * kGrid);
         pixel[3] += 1.0F / (kGrid * kGrid);
@@ -30,8 +34,10 @@ class IlluminationView {
   }
 
  private:
-  std::optional<Vec3f> seen(renderer::Vec2f film) const {
+  // seed: of what half-transparent surfaces let through.
+  std::optional<Vec3f> seen(renderer::Vec2f film, std::uint32_t seed) const {
     renderer::Ray ray = rays_.at(film);
+    ray.alpha_seed = seed;
     ray.of_camera = true;
     const auto hit = tracer_.intersect(ray);
     if (!hit) return std::nullopt;

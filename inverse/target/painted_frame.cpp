@@ -87,7 +87,10 @@ class FrameReader {
 
  private:
   Ray ray(int x, int y, int column, int row) const {
-    return rays_.at({float(x) + (float(column) + 0.5F) / kGrid, float(y) + (float(row) + 0.5F) / kGrid});
+    Ray ray = rays_.at({float(x) + (float(column) + 0.5F) / kGrid, float(y) + (float(row) + 0.5F) / kGrid});
+    // A pixel of a half-transparent surface and of what is behind it shows both, as an edge.
+    ray.alpha_seed = std::uint32_t(kGrid * row + column);
+    return ray;
   }
 
   // Width of a pixel where `point` is, metres, on a plane that faces the camera.

@@ -68,6 +68,7 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
       options_{.samples = settings.samples, .bounces = settings.bounces, .seed = settings.seed} {
   auto start = std::chrono::steady_clock::now();
   if (settings.bounces != 0) {
+    require_memory(memory, bytes_to_make_gather_points(options_));
     records_ = choose_irradiance_records(tracer, receivers.samples, options_.seed + 4, control);
     gather_ = make_gather_points(tracer, receivers.samples, options_, control);
     options_.samples = rays_of_record(settings.samples, receivers.size(), records_.receivers.size());
@@ -81,6 +82,13 @@ Baker::Baker(const RayTracer& tracer, const Receivers& receivers, const LightGri
   start = std::chrono::steady_clock::now();
   header_.indirect_relative_error = measure_indirect_error(control.without_progress());
   summary_.check_seconds = seconds_since(start);
+}
+
+void Baker::require_memory(double memory, double least) const {
+  if (memory >= least) return;
+  throw renderer::Error({tracer_.scene().path, "option --memory",
+                         fmt::format("leaves the bake {:.0f} MB beside the scene", std::max(0.0, memory) / 1e6),
+                         fmt::format("{:.0f} MB more, or fewer --samples", std::ceil((least - memory) / 1e6))});
 }
 
 // Of gather points and of records, which a band has its own list of.
@@ -103,12 +111,7 @@ void Baker::set_memory(double memory) {
   const double per_light = double(gather_.points.size()) * per_value;
   const double least = std::max({per_receiver * kLeastReceivers, per_record * kLeastRecords, per_light * kLeastLights});
   const double beside = records * band * per_value, each = (memory - beside) / 3;
-  if (each < least) {
-    throw renderer::Error(
-        {tracer_.scene().path, "option --memory",
-         fmt::format("leaves the bake {:.0f} MB beside the scene", std::max(0.0, memory) / 1e6),
-         fmt::format("{:.0f} MB more, or fewer --samples", std::ceil((beside + 3 * least - memory) / 1e6))});
-  }
+  require_memory(memory, beside + 3 * least);
   receivers_at_once_ = round_down(each / per_receiver, kLeastReceivers, kLeastReceivers, kMostReceivers);
   records_at_once_ = round_down(each / per_record, kLeastRecords, kLeastRecords, kMostRecords);
   lights_at_once_ = round_down(each / std::max(1.0, per_light), kLeastLights, kLeastLights, kBand);

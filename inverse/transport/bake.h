@@ -39,6 +39,7 @@ class Baker {
 
  private:
   double bytes_kept() const;
+  void require_memory(double bytes, double least) const;
   void set_memory(double bytes);
   void set_receivers(std::size_t first, std::size_t last);
   void set_lights(std::size_t first, std::size_t count, const renderer::Control& control);

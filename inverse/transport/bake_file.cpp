@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using renderer::Error;
 
+constexpr const char* kNew = ".new";  // behind the name of an unfinished bake: what it goes on in
 constexpr std::size_t kBand = TransportCacheWriter::kLights;
 constexpr std::size_t kColumns = 8 * TransportCacheWriter::kMostReceivers;  // copied at once, or more …
 constexpr std::size_t kMostEntries = std::size_t{1} << 22;                  // … of larger tiles, up to so many
@@ -186,7 +187,8 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
     throw Error({unfinished.string(), "header", "of another scene or of a bake with other options",
                  "the same again, or no --resume"});
   }
-  const fs::path aside = unfinished.string() + ".new";
+  const fs::path aside = unfinished.string() + kNew;
+  const renderer::UnfinishedFile removed_on_signal(aside);
   try {
     Unfinished next{replace_idle_file(aside), begin_anew(aside, header, range)};
     start = take_over(Parts(&unfinished_cache, 1), range, *next.writer, control);

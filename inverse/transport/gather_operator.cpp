@@ -205,6 +205,11 @@ void append_indirect(const RayTracer& tracer, const GatherOperator& gather, std:
 
 }  // namespace
 
+double bytes_to_make_gather_points(const GatherOptions& options) {
+  constexpr double kBytesPerPath = 190;  // of up to kPathLength samples, twice
+  return kBytesPerPath * options.paths_per_point * options.points_per_sample * options.samples;
+}
+
 GatherOperator make_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,
                                   const GatherOptions& options, const renderer::Control& control) {
   GatherOperator gather;

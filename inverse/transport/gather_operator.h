@@ -50,6 +50,9 @@ struct GatherOptions {
   std::uint64_t seed = 0;
 };
 
+// About how many bytes making gather points takes on the way.
+double bytes_to_make_gather_points(const GatherOptions& options);
+
 // All but K_rg.
 GatherOperator make_gather_points(const renderer::RayTracer& tracer, std::span<const renderer::SurfaceSample> receivers,
                                   const GatherOptions& options, const renderer::Control& control = {});

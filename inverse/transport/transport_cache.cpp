@@ -125,8 +125,8 @@ void read_tiles(TransportCacheReader& reader, std::span<const std::size_t> recei
   }
 }
 
-void read_scanlines(const std::filesystem::path& path, std::span<const std::size_t> receivers, TransportCache& cache) {
-  const renderer::ImageFile file = renderer::load_image(path);
+void read_scanlines(const renderer::ImageFile& file, std::span<const std::size_t> receivers,
+                    const std::filesystem::path& path, TransportCache& cache) {
   const std::array<int, 4> channels = find_channels(file.image.channel_names, path.string());
   for (std::size_t light = 0; light < cache.grid.positions.size(); ++light) {
     for (std::size_t i = 0; i < receivers.size(); ++i) {
@@ -159,6 +159,12 @@ void require_room_for_entries(std::size_t lights, std::size_t receivers, const s
   if (no_size || renderer::may_hold(bytes, kEntryBytes * entries)) return;
   throw Error({path.string(), "header", fmt::format("has more entries ({}) than such a file can hold", entries),
                "a whole file"});
+}
+
+TransportCache header_of_scanlines(const renderer::ImageFile& file, const std::filesystem::path& path) {
+  if (file.part) throw Error({path.string(), "dataWindow", "is a part of a cache", "a whole one"});
+  require_room_for_entries(std::size_t(file.image.height), std::size_t(file.image.width), path);
+  return transport_cache_from(file.attributes, file.image.width, file.image.height, path.string());
 }
 
 // Of a file of tiles.
@@ -236,29 +242,39 @@ TransportCache load_transport_cache_header(const std::filesystem::path& path) {
     require_whole(reader, path.string());
     return reader.header();
   }
-  const renderer::ImageFile file = renderer::load_image_header(path);
-  if (file.part) throw Error({path.string(), "dataWindow", "is a part of a cache", "a whole one"});
-  require_room_for_entries(std::size_t(file.image.height), std::size_t(file.image.width), path);
-  return transport_cache_from(file.attributes, file.image.width, file.image.height, path.string());
+  return header_of_scanlines(renderer::load_image_header(path), path);
 }
 
 TransportCache load_transport_cache(const std::filesystem::path& path,
                                     std::optional<std::span<const std::size_t>> receivers) {
-  TransportCache cache = load_transport_cache_header(path);
+  // Header and entries of one file, whatever takes its name meanwhile.
+  std::optional<TransportCacheReader> tiles;
+  renderer::ImageFile scanlines;
+  if (renderer::ExrTileReader::is_tiled(path)) {
+    tiles.emplace(path);
+    require_whole(*tiles, path.string());
+  } else {
+    load_transport_cache_header(path);  // refuses what is too large before it takes memory
+    scanlines = renderer::load_image(path);
+  }
+  TransportCache cache = tiles ? tiles->header() : header_of_scanlines(scanlines, path);
   std::vector<std::size_t> all;
   if (!receivers) {
     all.resize(cache.receiver_count);
     std::iota(all.begin(), all.end(), std::size_t{0});
     receivers = all;
+  } else if (std::any_of(receivers->begin(), receivers->end(),
+                         [&](std::size_t r) { return r >= cache.receiver_count; })) {
+    throw Error({path.string(), "header", fmt::format("has {} receivers, fewer than before", cache.receiver_count),
+                 "the cache as it was"});
   }
   cache.receiver_count = receivers->size();
   cache.visibility.resize(cache.grid.positions.size() * receivers->size());
   cache.indirect.resize(cache.visibility.size());
-  if (renderer::ExrTileReader::is_tiled(path)) {
-    TransportCacheReader reader(path);
-    read_tiles(reader, *receivers, path.string(), cache);
+  if (tiles) {
+    read_tiles(*tiles, *receivers, path.string(), cache);
   } else {
-    read_scanlines(path, *receivers, cache);
+    read_scanlines(scanlines, *receivers, path, cache);
   }
   require_finite(cache, *receivers, path.string());
   return cache;

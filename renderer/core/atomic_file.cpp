@@ -15,21 +15,38 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/unique_name.h"
 
 namespace chiaro::renderer {
+
+struct UnfinishedFile::Name {
+  std::atomic<bool> taken = false, whole = false;
+  std::array<char, PATH_MAX> path{};
+};
+
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, int code) {
   throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(code)), ""});
 }
 
-void sync(const std::filesystem::path& path, const std::filesystem::path& named) {
-  const int file = ::open(path.c_str(), O_RDONLY);
-  if (file < 0) fail(named, errno);
-  const int result = ::fsync(file);
-  const int code = errno;
+// The file that the call opens or does something to, however many signals come meanwhile.
+template <class Call>
+int despite_signals(const Call& call) {
+  int result = 0;
+  do {
+    result = call();
+  } while (result < 0 && errno == EINTR);
+  return result;
+}
+
+// 0, or why it may not be on the disk.
+int sync(const std::filesystem::path& path) {
+  const int file = despite_signals([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
+  if (file < 0) return errno;
+  const int code = despite_signals([&] { return ::fsync(file); }) == 0 ? 0 : errno;
   ::close(file);
-  if (result != 0 && code != EINVAL) fail(named, code);
+  return code == EINVAL ? 0 : code;
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
@@ -38,42 +55,43 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
 
 // Hidden, of the same kind, and no longer than names may be.
 std::filesystem::path name_aside(const std::filesystem::path& path) {
-  const std::string end = fmt::format(".{}.part{}", ::getpid(), path.extension().string());
+  const std::string end = fmt::format(".{}.part{}", unique_name(), path.extension().string());
   const std::string stem = path.stem().string();
   return folder_of(path) / ('.' + stem.substr(0, NAME_MAX - 1 - std::min<std::size_t>(end.size(), NAME_MAX - 1)) + end);
 }
 
+// As open as the file that it will replace.
+void keep_permissions(const std::filesystem::path& path, const std::filesystem::path& aside) {
+  struct stat there {};
+  if (::lstat(path.c_str(), &there) == 0 && S_ISREG(there.st_mode)) ::chmod(aside.c_str(), there.st_mode & 0777);
+}
+
 // Where a signal handler finds the names of the files being written.
-struct UnfinishedName {
-  std::atomic<bool> taken = false, whole = false;
-  std::array<char, PATH_MAX> path{};
-};
-std::array<UnfinishedName, 8> unfinished_names;
+std::array<UnfinishedFile::Name, 8> unfinished_names;
 
-// A name that a signal handler removes, while this lives. Where too many are being written it is none of them.
-class Unfinished {
- public:
-  explicit Unfinished(const std::filesystem::path& path) {
-    if (path.native().size() >= PATH_MAX) return;
-    for (UnfinishedName& name : unfinished_names) {
-      if (name.taken.exchange(true)) continue;
-      std::memcpy(name.path.data(), path.c_str(), path.native().size() + 1);
-      name.whole = true;
-      name_ = &name;
-      return;
-    }
+UnfinishedFile::Name* take_name(const std::filesystem::path& path) {
+  if (path.native().size() >= PATH_MAX) return nullptr;
+  for (UnfinishedFile::Name& name : unfinished_names) {
+    if (name.taken.exchange(true)) continue;
+    std::memcpy(name.path.data(), path.c_str(), path.native().size() + 1);
+    name.whole = true;
+    return &name;
   }
-  ~Unfinished() {
-    if (name_ == nullptr) return;
-    name_->whole = false;
-    name_->taken = false;
-  }
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
+  return nullptr;
+}
 
- private:
-  UnfinishedName* name_ = nullptr;
-};
+// What cannot take its place stays whole where it is. The folder's sync may fail: by then the file is in its place.
+void put_into_place(const std::filesystem::path& aside, const std::filesystem::path& path) {
+  keep_permissions(path, aside);
+  std::error_code renamed;
+  std::filesystem::rename(aside, path, renamed);
+  if (renamed) {
+    throw Error({path.string(), "",
+                 fmt::format("cannot be written: {}; the whole file is left as {}", renamed.message(), aside.string()),
+                 ""});
+  }
+  sync(folder_of(path));
+}
 
 // Closes the file that it is given.
 class OpenFile {
@@ -100,17 +118,22 @@ class OpenFile {
 }  // namespace
 
 void remove_unfinished_files() {
-  for (const UnfinishedName& name : unfinished_names) {
+  for (const UnfinishedFile::Name& name : unfinished_names) {
     if (name.whole) ::unlink(name.path.data());
   }
 }
 
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& path) : name_(take_name(path)) {}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (name_ == nullptr) return;
+  name_->whole = false;
+  name_->taken = false;
+}
+
 void move_into_place(const std::filesystem::path& aside, const std::filesystem::path& path) {
-  sync(aside, path);
-  std::error_code renamed;
-  std::filesystem::rename(aside, path, renamed);
-  if (renamed) fail(path, renamed.value());
-  sync(folder_of(path), path);
+  if (const int code = sync(aside)) fail(path, code);
+  put_into_place(aside, path);
 }
 
 void write_atomically(const std::filesystem::path& path,
@@ -123,12 +146,12 @@ void write_atomically(const std::filesystem::path& path,
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error({path.string(), "", "is a folder", "the name of a file"});
   }
+  if (path.filename().native().size() > NAME_MAX) fail(path, ENAMETOOLONG);
   const std::filesystem::path aside = name_aside(path);
-  const Unfinished unfinished(aside);
-  ::unlink(aside.c_str());  // whatever has the name is no file of ours; nothing is written through a link
+  const UnfinishedFile unfinished(aside);
   try {
     write(aside);
-    move_into_place(aside, path);
+    if (const int code = sync(aside)) fail(path, code);
   } catch (const Error& error) {
     std::filesystem::remove(aside, ignored);
     if (error.parts().file != aside.string()) throw;
@@ -137,6 +160,7 @@ void write_atomically(const std::filesystem::path& path,
     std::filesystem::remove(aside, ignored);
     throw;
   }
+  put_into_place(aside, path);
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {

@@ -7,9 +7,10 @@
 
 namespace chiaro::renderer {
 
-// Calls write(path) with a name beside `path` (same folder, same extension), syncs what it wrote and renames it to
-// `path`. If write throws, or the write fails, nothing is left behind and what was at `path` before stays.
-// An Error of write that names the other file names `path` instead. Missing parent folders are an Error.
+// Calls write(path) with a name beside `path` that nothing has (same folder, same extension), syncs what it wrote and
+// renames it to `path`, with the permissions of what it replaces. If write throws, or the write fails, nothing is left
+// behind and what was at `path` before stays. An Error of write that names the other file names `path` instead. Missing
+// parent folders are an Error. If what is whole cannot take its place, it is left, and the Error says where.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
@@ -18,6 +19,19 @@ void move_into_place(const std::filesystem::path& aside, const std::filesystem::
 
 // As write_atomically, for bytes in memory.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+// A file that remove_unfinished_files() removes while this lives. Where too many are being written it does not.
+class UnfinishedFile {
+ public:
+  struct Name;
+  explicit UnfinishedFile(const std::filesystem::path& path);
+  ~UnfinishedFile();
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+ private:
+  Name* name_;
+};
 
 // Removes what is being written aside. For signal handlers that end the program.
 void remove_unfinished_files();

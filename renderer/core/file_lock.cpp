@@ -14,6 +14,12 @@
 #include "renderer/core/error.h"
 
 namespace chiaro::renderer {
+namespace {
+
+// Some network file systems: there the user sees to it that one process writes a file.
+bool has_no_locks(int error) { return error == ENOSYS || error == ENOLCK || error == EOPNOTSUPP; }
+
+}  // namespace
 
 bool names_open_file(const std::filesystem::path& path, int descriptor) {
   struct stat opened {
@@ -31,11 +37,15 @@ std::optional<FileLock> FileLock::make_new(const std::filesystem::path& path) {
   return FileLock(path, file);
 }
 
+FileLock FileLock::of_folder(const std::filesystem::path& folder) {
+  return FileLock(folder, ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+}
+
 // file: as it was opened, or not.
 FileLock::FileLock(const std::filesystem::path& path, int file) : file_(file) {
   if (file_ < 0) throw Error({path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)), ""});
   // It may have been renamed between being opened and being locked.
-  const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0;
+  const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0 || has_no_locks(errno);
   if (locked && names_open_file(path, file_)) return;
   const int why = locked ? EWOULDBLOCK : errno;
   ::close(file_);

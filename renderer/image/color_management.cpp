@@ -368,6 +368,13 @@ void require_linear_space(const std::filesystem::path& config, const std::string
                fmt::format("one of {}", fmt::join(linear_spaces(loaded, config), ", "))});
 }
 
+std::string name_of_space(const std::filesystem::path& config, const std::string& space) {
+  const ocio::ConstConfigRcPtr loaded = load_config(config);
+  check_space(loaded, space, config);
+  const ocio::ConstColorSpaceRcPtr found = loaded->getColorSpace(space.c_str());
+  return found ? found->getName() : space;  // a named transform has no space
+}
+
 void convert_to_rec709(Image& image, const std::filesystem::path& config, const std::string& space) {
   std::vector<float> rgb = rgb_of(image).pixels;
   const ocio::ConstConfigRcPtr loaded = load_config(config);

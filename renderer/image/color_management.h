@@ -40,6 +40,9 @@ void convert_from_rec709(Image& image, const std::filesystem::path& config, cons
 // are no linear function of scene-linear Rec.709.
 void require_linear_space(const std::filesystem::path& config, const std::string& space);
 
+// The space's own name, where `space` may be a role or an alias of it.
+std::string name_of_space(const std::filesystem::path& config, const std::string& space);
+
 // The first three channels from a named space (or role) of the config to scene-linear Rec.709, in place. Error, naming
 // the choices, where the config has no such space.
 void convert_to_rec709(Image& image, const std::filesystem::path& config, const std::string& space);

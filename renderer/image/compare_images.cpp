@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -60,7 +61,6 @@ struct PixelSums {
   }
 
   ImageComparison finish(const std::optional<double>& peak) {
-    if (differences.weight == 0) throw Error({"", "", "no pixel is finite in both pictures", "pictures without NaN"});
     for (int c = 0; c < 3; ++c) {
       result.mean_a[c] /= differences.weight / 3;
       result.mean_b[c] /= differences.weight / 3;
@@ -79,6 +79,9 @@ struct PixelSums {
     figures.relative_mse = sums.relative_mse();
     figures.psnr = sums.psnr(peak.value_or(sums.peak));
     figures.max_difference = sums.max_difference;
+    if (sums.weight > 0) return;
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    figures.relative_l2 = figures.psnr = figures.max_difference = kUnknown;
   }
 };
 

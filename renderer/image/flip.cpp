@@ -174,11 +174,13 @@ Vec3f lab_at(const Planes& opponent, std::size_t i) {
   return adjusted_lab(clamped(linear_of_xyz(xyz)));
 }
 
-// Weights above 0 add up to 1, those below to −1.
+// Weights above 0 add up to 1, those below to −1. Where pixels are too large for a feature there are none.
 FilterWeights balanced(FilterWeights weights) {
   float positive = 0, negative = 0;
   for (const float weight : weights) (weight > 0 ? positive : negative) += weight;
-  for (float& weight : weights) weight /= weight > 0 ? positive : -negative;
+  for (float& weight : weights) {
+    if (weight != 0) weight /= weight > 0 ? positive : -negative;
+  }
   return weights;
 }
 

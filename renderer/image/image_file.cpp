@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -80,7 +81,7 @@ std::string bytes_to_decode(const std::filesystem::path& path) {
 struct OpenImage {
   std::string encoded;  // all bytes of a PNG or a WebP
   SamplesHeader header{};
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> reader{};
+  std::unique_ptr<OIIO::Filesystem::IOProxy> reader{};
   std::unique_ptr<OIIO::ImageInput> input{};
   std::optional<RadianceHeader> radiance{};  // of a Radiance picture
   int part = 0;                              // of an OpenEXR file of several
@@ -104,11 +105,20 @@ int choose_part(OIIO::ImageInput& input) {
   return 0;
 }
 
+// OpenImageIO takes what comes after a question mark for options.
+bool has_plain_name(const std::filesystem::path& path) { return path.native().find('?') == std::string::npos; }
+
+// By which OpenImageIO knows the kind of what is read through a reader.
+std::string name_to_open(const OpenImage& image, const std::filesystem::path& path) {
+  if (image.reader == nullptr) return path.string();
+  if (image.encoded.empty()) return "image" + path.extension().string();
+  return is_webp(image.encoded) ? "image.webp" : "image.png";
+}
+
 // Their header is known to be right before OpenImageIO sees it, and so are the bytes.
 OpenImage open(const std::filesystem::path& path) {
   require_file(path, "an image");
   OpenImage image{bytes_to_decode(path)};
-  const bool webp = is_webp(image.encoded);
   if (!image.encoded.empty()) {
     image.header = read_samples_header(image.encoded, path.string());
     image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
@@ -117,14 +127,16 @@ OpenImage open(const std::filesystem::path& path) {
       throw Error({path.string(), "", *damage, "a whole image"});
     }
   }
+  if (image.encoded.empty() && !has_plain_name(path)) {
+    image.reader = std::make_unique<OIIO::Filesystem::IOFile>(path.string(), OIIO::Filesystem::IOProxy::Read);
+  }
   if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole image"});
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   if (OIIO::Filesystem::IOProxy* reader = image.reader.get()) {
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &reader);  // its reader of PNG looks here alone
   }
-  image.input = OIIO::ImageInput::open(image.reader ? (webp ? "image.webp" : "image.png") : path.string(), &config,
-                                       image.reader.get());
+  image.input = OIIO::ImageInput::open(name_to_open(image, path), &config, image.reader.get());
   if (!image.input) {
     const std::string reason = first_line(OIIO::geterror());
     const bool known = reason.find("could not find a format reader") == std::string::npos;
@@ -255,8 +267,8 @@ OIIO::ImageSpec spec_of(const Image& image, const ChannelTypes& types, const Att
 bool is_held(float value) { return std::isfinite(value) && std::abs(value) > kMaxHalf; }
 
 // What halves cannot hold would become infinite.
-std::vector<float> clamped_to_half(const std::vector<float>& pixels, const OIIO::ImageSpec& spec) {
-  std::vector<float> clamped = pixels;
+std::vector<float> clamped_to_half(std::span<const float> pixels, const OIIO::ImageSpec& spec) {
+  std::vector<float> clamped(pixels.begin(), pixels.end());
   for (int c = 0; c < spec.nchannels; ++c) {
     if (spec.channelformat(c) != OIIO::TypeHalf) continue;
     for (std::size_t i = std::size_t(c); i < clamped.size(); i += std::size_t(spec.nchannels)) {
@@ -264,6 +276,19 @@ std::vector<float> clamped_to_half(const std::vector<float>& pixels, const OIIO:
     }
   }
   return clamped;
+}
+
+// In parts, so that there are never two of a large frame.
+bool write_clamped(const Image& image, const OIIO::ImageSpec& spec, OIIO::ImageOutput& output) {
+  constexpr int kScanlines = 256;  // whole blocks of OpenEXR's
+  const std::size_t row = std::size_t(image.width) * std::size_t(image.channel_count());
+  for (int y = 0; y < image.height; y += kScanlines) {
+    const int end = std::min(image.height, y + kScanlines);
+    const std::vector<float> part =
+        clamped_to_half(std::span(image.pixels).subspan(std::size_t(y) * row, std::size_t(end - y) * row), spec);
+    if (!output.write_scanlines(y, end, 0, OIIO::TypeFloat, part.data())) return false;
+  }
+  return true;
 }
 
 void check_channels(const Image& image, const std::filesystem::path& path, const OIIO::ImageOutput& output) {
@@ -279,9 +304,8 @@ void check_channels(const Image& image, const std::filesystem::path& path, const
 
 void write(const Image& image, const std::string& name, const OIIO::ImageSpec& spec, OIIO::ImageOutput& output) {
   const bool half = spec.format == OIIO::TypeHalf || !spec.channelformats.empty();
-  const std::vector<float> clamped = half ? clamped_to_half(image.pixels, spec) : std::vector<float>{};
-  const float* pixels = half ? clamped.data() : image.pixels.data();
-  const bool written = output.open(name, spec) && output.write_image(OIIO::TypeFloat, pixels);
+  const bool written = output.open(name, spec) && (half ? write_clamped(image, spec, output)
+                                                        : output.write_image(OIIO::TypeFloat, image.pixels.data()));
   if (!output.close() || !written) {
     throw Error({name, "", fmt::format("cannot be written: {}", first_line(output.geterror())), ""});
   }

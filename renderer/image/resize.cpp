@@ -19,6 +19,7 @@ std::vector<Tap> taps_of(int target, int from, int to) {
   double sum = 0;
   for (int i = int(std::ceil(center - radius)); i <= int(std::floor(center + radius)); ++i) {
     const double weight = 1 - std::abs(i - center) / radius;
+    if (!(weight > 0)) continue;
     taps.push_back({std::clamp(i, 0, from - 1), float(weight)});
     sum += weight;
   }

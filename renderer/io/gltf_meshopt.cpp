@@ -81,11 +81,24 @@ std::string decode_view(const GltfDocument& document, int view, const GltfMeshop
   return bytes;
 }
 
+// Views may share their bytes.
+void require_sensible_sum(const GltfDocument& document, const std::vector<std::pair<int, GltfMeshoptView>>& views) {
+  std::size_t compressed = 0, decoded = 0;
+  for (const std::string& buffer : document.buffers) compressed += buffer.size();
+  for (const auto& [view, source] : views) {
+    decoded += checked_size(document, view, source);
+    if (decoded / kMostExpansion <= compressed) continue;
+    fail(document, place_of(view), fmt::format("{} bytes come of buffers of {} up to here", decoded, compressed),
+         fmt::format("at most {} times the size", kMostExpansion));
+  }
+}
+
 }  // namespace
 
 void decode_meshopt_views(GltfDocument& document) {
   const std::vector<std::pair<int, GltfMeshoptView>> views(document.json.meshopt_views.begin(),
                                                            document.json.meshopt_views.end());
+  require_sensible_sum(document, views);
   std::vector<std::string> decoded(views.size());
   parallel_for(views.size(),
                [&](std::size_t i) { decoded[i] = decode_view(document, views[i].first, views[i].second); });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace chiaro::renderer {
 
@@ -28,7 +29,8 @@ struct AlbedoTable {
     return mix(r.t, mix(c.t, low[c.low], low[c.low + 1]), mix(c.t, high[c.low], high[c.low + 1]));
   }
   Albedo mean_at(float alpha) const { return between(mean, alpha); }
-  static Albedo between(const std::array<Albedo, kSize>& of_roughness, float alpha) {
+  template <class Value>
+  static Value between(const std::array<Value, kSize>& of_roughness, float alpha) {
     const Place r = place(std::sqrt(alpha));
     return mix(r.t, of_roughness[r.low], of_roughness[r.low + 1]);
   }
@@ -45,9 +47,9 @@ struct AlbedoTable {
   }
 };
 
-// integrate(cosine, alpha): the albedo that viewers of this cosine see.
-template <class Albedo, class Integrate>
-AlbedoTable<Albedo> make_albedo_table(const Integrate& integrate) {
+// integrate(cosine, alpha): the albedo that viewers of this cosine see. The mean is of value(albedo).
+template <class Albedo, class Integrate, class Value = std::identity>
+AlbedoTable<Albedo> make_albedo_table(const Integrate& integrate, const Value& value = {}) {
   constexpr int kSize = kAlbedoTableSize;
   constexpr float kLeastRoughness = 0.03F;
   AlbedoTable<Albedo> table;
@@ -61,11 +63,30 @@ AlbedoTable<Albedo> make_albedo_table(const Integrate& integrate) {
       table.directional[r][c] = albedo;
       const float weight = AlbedoTable<Albedo>::weight_in_mean(c);
       total += weight;
-      if (weight > 0) mean = mix(weight / total, mean, albedo);
+      if (weight > 0) mean = mix(weight / total, mean, value(albedo));
     }
     table.mean[r] = mean;
   }
   return table;
+}
+
+// Means of the larger of two cosine-weighted viewers' value(albedo), by roughness.
+template <class Albedo, class Value>
+std::array<float, kAlbedoTableSize> means_of_larger(const AlbedoTable<Albedo>& table, const Value& value) {
+  constexpr int kSize = kAlbedoTableSize;
+  std::array<float, kSize> means;
+  for (int r = 0; r < kSize; ++r) {
+    float sum = 0, total = 0;
+    for (int a = 0; a < kSize; ++a) {
+      for (int b = 0; b < kSize; ++b) {
+        const float weight = AlbedoTable<Albedo>::weight_in_mean(a) * AlbedoTable<Albedo>::weight_in_mean(b);
+        sum += weight * std::max(value(table.directional[r][a]), value(table.directional[r][b]));
+        total += weight;
+      }
+    }
+    means[r] = sum / total;
+  }
+  return means;
 }
 
 }  // namespace chiaro::renderer

@@ -163,9 +163,9 @@ Vec3f hemispherical_albedo(const SurfacePoint& point) {
   Vec3f albedo = BsdfBase(point).hemispherical_reflectance();
   if (!has_layers(point)) return albedo;
   const BsdfSheen sheen(point);
-  const float coat = BsdfClearcoat(point).mean_albedo();
+  const BsdfClearcoat coat(point);
   albedo = sheen.mean_albedo() + sheen.mean_below() * albedo;
-  return coat * Vec3f{1, 1, 1} + (1 - coat) * albedo;
+  return coat.mean_albedo() * Vec3f{1, 1, 1} + coat.mean_below() * albedo;
 }
 
 }  // namespace chiaro::renderer

@@ -41,6 +41,8 @@ float BsdfClearcoat::albedo(Vec3f direction) const {
 
 float BsdfClearcoat::mean_albedo() const { return strength_ * mean_specular_albedo(alpha_).at(kClearcoatF0); }
 
+float BsdfClearcoat::mean_below() const { return 1 - strength_ * mean_larger_clearcoat_albedo(alpha_); }
+
 bool BsdfClearcoat::rough() const { return is_rough(alpha_); }
 
 }  // namespace chiaro::renderer

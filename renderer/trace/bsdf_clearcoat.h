@@ -22,7 +22,8 @@ class BsdfClearcoat {
   std::optional<Vec3f> sample(Vec3f to_viewer, Vec2f u) const;
   float albedo(Vec3f direction) const;  // what it sends back
   float below(Vec3f to_viewer, Vec3f to_light) const { return 1 - std::max(albedo(to_viewer), albedo(to_light)); }
-  float mean_albedo() const;  // under a cosine-weighted sky
+  float mean_albedo() const;  // under a cosine-weighted sky …
+  float mean_below() const;   // … and what is left for what is below
   bool rough() const;         // as BsdfBase::Sample
 
  private:

@@ -17,12 +17,13 @@ namespace {
 
 constexpr std::size_t kLongestName = 200;  // bytes of a light's; OpenEXR's channels have up to 255
 
-// Layer names are unique and hold no dot, which separates layers in EXR.
+// Layer names are unique, and hold no dot, which separates layers in EXR, and nothing that a name ends at.
 std::string light_layer_name(const Light& light, std::size_t index, std::set<std::string>& taken) {
   std::string name = name_of(light).empty() ? fmt::format("{}", index) : name_of(light);
   name = shortened(name, kLongestName);
   for (char& c : name) {
-    if (c == '.' || c == ' ') c = '_';
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '.' || byte <= ' ' || byte == 0x7F) c = '_';
   }
   while (!taken.insert(name).second) name += fmt::format("_{}", index);
   return "light." + name;
@@ -168,8 +169,8 @@ int Film::half_samples(std::size_t tile, int half) const {
 
 int Film::tile_samples(std::size_t tile) const { return half_samples(tile, 0) + half_samples(tile, 1); }
 
-// Halves count the same even where one has more samples: each goes by the other's samples, a mean weighted by numbers of
-// samples would go by its own.
+// Halves count the same even where one has more samples: each goes by the other's samples, a mean weighted by numbers
+// of samples would go by its own.
 std::array<double, 2> Film::half_weights(std::size_t tile) const {
   const int a = half_samples(tile, 0), b = half_samples(tile, 1);
   if (b == 0) return {a > 0 ? 1.0 / a : 0.0, 0};
@@ -258,14 +259,12 @@ void Film::finish_pixel(std::size_t tile, int pixel, float* out) const {
   for (std::size_t c = 0; c < 3; ++c) out[std::size_t(variance_) + c] = held(variance[c]);
 }
 
-Image Film::finish() const {
-  Image image = make_image(width_, height_, names_);
+void Film::finish(Image& image) const {
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
     for (int pixel = 0; pixel < tiles_[tile].pixels(); ++pixel) {
       finish_pixel(tile, pixel, &image.pixels[index(tile, pixel) * stride_]);
     }
   }
-  return image;
 }
 
 }  // namespace chiaro::renderer

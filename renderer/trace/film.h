@@ -77,8 +77,10 @@ class Film {
   std::optional<double> relative_standard_error() const;  // of the frame, sqrt(Σ se² / Σ value²); if it is known
   std::uint64_t dropped() const;
 
-  // Means; position, depth and normal are means over the samples that hit something.
-  Image finish() const;
+  // Black, of the frame's size and channels.
+  Image blank() const { return make_image(width_, height_, names_); }
+  // Fills it with means; position, depth and normal are means over the samples that hit something.
+  void finish(Image& image) const;
 
  private:
   struct PixelEstimate {

@@ -18,8 +18,9 @@ struct FrameTask {
   const CameraRays& rays;
   const PixelFilter& filter;
   const RenderOptions& options;
-  const MatteIds& mattes;  // empty: not asked for
-  const Media media;       // that the camera is inside of
+  const MatteIds& mattes;     // empty: not asked for
+  const Media media;          // that the camera is inside of
+  const Vec3f eye, backward;  // of the camera
 };
 
 // One sample of a batch of a pixel.
@@ -66,7 +67,7 @@ void sample_pixel(const FrameTask& task, const SampleKey& key, const Film& film,
   sample.albedo = point.base_color;
   sample.normal = point.shading_normal;
   sample.position = point.position;
-  sample.depth = hit->distance;
+  sample.depth = dot(task.eye - point.position, task.backward);
   if (film.wants_mattes()) {
     sample.object = task.mattes.objects[hit->instance];
     sample.material = task.mattes.materials[scene.meshes[scene.instances[hit->instance].mesh].material];
@@ -77,6 +78,8 @@ void sample_pixel(const FrameTask& task, const SampleKey& key, const Film& film,
   sample.beauty = sample.light.direct + sample.light.indirect;
   if (film.wants_illumination()) {
     PathLight light;
+    light.clamp_direct = task.options.clamp_direct;
+    light.clamp_indirect = task.options.clamp_indirect;
     task.paths.add_illumination(point, task.media, sampler, light);
     sample.illumination = light.direct + light.indirect;
   }
@@ -217,10 +220,19 @@ Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights
   Film film(options.width, options.height, options.layers, lights, options.trace.samples);
   const MatteIds mattes = film.wants_mattes() ? matte_ids(tracer.scene()) : MatteIds{};
   const Vec3f eye = transform_point(camera.world_from_camera, {0, 0, 0});
-  const FrameTask task{tracer, paths, rays, filter, options, mattes, paths.media_at(eye)};
+  const FrameTask task{tracer,
+                       paths,
+                       rays,
+                       filter,
+                       options,
+                       mattes,
+                       paths.media_at(eye),
+                       eye,
+                       normalize(camera.world_from_camera.column(2))};
   Frame frame;
+  frame.image = film.blank();  // what memory does not hold is known before the samples are taken
   frame.interrupted = add_passes(task, clock, control, learnt, film);
-  frame.image = film.finish();
+  film.finish(frame.image);
   frame.lens = options.lens;
   if (film.wants_mattes()) frame.mattes = mattes_of(tracer.scene());
   frame.relative_standard_error = film.relative_standard_error();
@@ -230,12 +242,12 @@ Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights
   return frame;
 }
 
-Camera default_camera(const Scene& scene) {
+Camera default_camera(const Scene& scene, float aspect_ratio) {
   const Box3f box = bounds(scene);
   Camera camera;
   camera.name = "default";
   const Vec3f backward = normalize(Vec3f{0.6F, 0.45F, 1.0F});
-  const float distance = 0.6F * box.diagonal() / std::tan(0.5F * camera.vertical_fov);
+  const float distance = 0.6F * box.diagonal() / (std::tan(0.5F * camera.vertical_fov) * std::min(1.0F, aspect_ratio));
   const Vec3f right = normalize(cross({0, 1, 0}, backward)), up = cross(backward, right);
   const Vec3f eye = box.center() + distance * backward;
   const Vec3f columns[4] = {right, up, backward, eye};

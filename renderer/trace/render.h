@@ -45,7 +45,7 @@ struct Frame {
 Frame render(const RayTracer& tracer, const Camera& camera, const Lights& lights, const RenderOptions& options,
              const Control& control = {});
 
-// A camera that sees the whole scene, for scenes without one.
-Camera default_camera(const Scene& scene);
+// A camera that sees the whole scene in frames of this shape, width over height, for scenes without one.
+Camera default_camera(const Scene& scene, float aspect_ratio = 1);
 
 }  // namespace chiaro::renderer

@@ -6,7 +6,6 @@
 namespace chiaro::renderer {
 namespace {
 
-constexpr int kSize = kAlbedoTableSize;
 constexpr int kRings = 48, kSectors = 48;
 
 // The fit of Λ, between its tables for a roughness of 0 and of 1.
@@ -40,45 +39,15 @@ float integrate(float cosine, float alpha) {
   return float(sum * 2 * M_PI / (kRings * kSectors));
 }
 
-using Table = AlbedoTable<float>;
+float at_most_one(float albedo) { return std::min(1.0F, albedo); }
 
 struct Tables {
-  Table albedo;
-  std::array<float, kSize> larger;  // [roughness], of two cosine-weighted directions, mean
+  AlbedoTable<float> albedo = make_albedo_table<float>(integrate, at_most_one);
+  std::array<float, kAlbedoTableSize> larger = means_of_larger(albedo, at_most_one);  // by roughness
 };
 
-// Of one roughness.
-float mean_of_larger(const std::array<float, kSize>& albedo) {
-  float sum = 0, total = 0;
-  for (int a = 0; a < kSize; ++a) {
-    for (int b = 0; b < kSize; ++b) {
-      const float weight = Table::weight_in_mean(a) * Table::weight_in_mean(b);
-      sum += weight * std::min(1.0F, std::max(albedo[a], albedo[b]));
-      total += weight;
-    }
-  }
-  return sum / total;
-}
-
-Tables make_tables() {
-  Tables tables;
-  for (int r = 0; r < kSize; ++r) {
-    const float roughness = float(r) / (kSize - 1);
-    float sum = 0, total = 0;
-    for (int c = 0; c < kSize; ++c) {
-      const float cosine = std::max(1e-3F, float(c) / (kSize - 1)), weight = Table::weight_in_mean(c);
-      tables.albedo.directional[r][c] = integrate(cosine, roughness * roughness);
-      sum += weight * std::min(1.0F, tables.albedo.directional[r][c]);
-      total += weight;
-    }
-    tables.albedo.mean[r] = sum / total;
-    tables.larger[r] = mean_of_larger(tables.albedo.directional[r]);
-  }
-  return tables;
-}
-
 const Tables& tables() {
-  static const Tables made = make_tables();
+  static const Tables made;
   return made;
 }
 
@@ -97,6 +66,6 @@ float sheen_albedo(float cosine, float alpha) { return tables().albedo.at(cosine
 
 float mean_sheen_albedo(float alpha) { return tables().albedo.mean_at(alpha); }
 
-float mean_larger_sheen_albedo(float alpha) { return Table::between(tables().larger, alpha); }
+float mean_larger_sheen_albedo(float alpha) { return AlbedoTable<float>::between(tables().larger, alpha); }
 
 }  // namespace chiaro::renderer

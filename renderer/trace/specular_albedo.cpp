@@ -2,6 +2,7 @@
 
 #include "renderer/core/sampler.h"
 #include "renderer/trace/albedo_table.h"
+#include "renderer/trace/fresnel.h"
 #include "renderer/trace/ggx.h"
 
 namespace chiaro::renderer {
@@ -32,15 +33,26 @@ SpecularAlbedo integrate(float cosine, float alpha) {
   return sum;
 }
 
-const AlbedoTable<SpecularAlbedo>& table() {
-  static const auto made = make_albedo_table<SpecularAlbedo>(integrate);
+float of_clearcoat(SpecularAlbedo albedo) { return albedo.at(kClearcoatF0); }
+
+struct Tables {
+  AlbedoTable<SpecularAlbedo> albedo = make_albedo_table<SpecularAlbedo>(integrate);
+  std::array<float, kAlbedoTableSize> larger_of_clearcoat = means_of_larger(albedo, of_clearcoat);  // by roughness
+};
+
+const Tables& tables() {
+  static const Tables made;
   return made;
 }
 
 }  // namespace
 
-SpecularAlbedo specular_albedo(float cosine, float alpha) { return table().at(cosine, alpha); }
+SpecularAlbedo specular_albedo(float cosine, float alpha) { return tables().albedo.at(cosine, alpha); }
 
-SpecularAlbedo mean_specular_albedo(float alpha) { return table().mean_at(alpha); }
+SpecularAlbedo mean_specular_albedo(float alpha) { return tables().albedo.mean_at(alpha); }
+
+float mean_larger_clearcoat_albedo(float alpha) {
+  return AlbedoTable<SpecularAlbedo>::between(tables().larger_of_clearcoat, alpha);
+}
 
 }  // namespace chiaro::renderer

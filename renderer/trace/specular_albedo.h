@@ -18,4 +18,7 @@ SpecularAlbedo specular_albedo(float cosine, float alpha);
 // Mean over cosine-weighted viewers.
 SpecularAlbedo mean_specular_albedo(float alpha);
 
+// Mean of the larger of two cosine-weighted directions' albedos, of a clear coat.
+float mean_larger_clearcoat_albedo(float alpha);
+
 }  // namespace chiaro::renderer

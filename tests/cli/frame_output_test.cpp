@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "cli/frame_output.h"
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
+#include "tests/support/code_scenes.h"
 
 namespace chiaro::cli {
 namespace {
@@ -62,21 +64,24 @@ std::string text_of(const renderer::Attributes& attributes) {
   return text;
 }
 
-TEST(CliFrameMetadata, WorldToCameraLooksAlongMinusZ) {
+TEST(CliFrameMetadata, WorldToCameraLooksAlongZAsOpenExrDefinesIt) {
   const auto matrix = matrix_named(frame_attributes(camera_looking_along_x(), 2, {}), "worldToCamera");
-  expect_near(times_row_vector({5, 2, 3}, matrix), {0, 0, -4});
+  expect_near(times_row_vector({5, 2, 3}, matrix), {0, 0, 4});
   expect_near(times_row_vector({1, 2, 4}, matrix), {1, 0, 0});
 }
 
-TEST(CliFrameMetadata, WorldToNdcMapsTheFramesCornersToOne) {
+TEST(CliFrameMetadata, WorldToNdcMapsTheFramesUpperLeftCornerToZeroAndTheLowerRightToOne) {
   const auto matrix = matrix_named(frame_attributes(camera_looking_along_x(), 2, {}), "worldToNDC");
   // Four metres ahead the frame is 4 m high and 8 m wide.
-  const Vec3f corner = times_row_vector({5, 2 + 2, 3 + 4}, matrix);
-  EXPECT_NEAR(corner.x, 1, 1e-5);
-  EXPECT_NEAR(corner.y, 1, 1e-5);
-  const Vec3f opposite = times_row_vector({5, 2 - 2, 3 - 4}, matrix);
-  EXPECT_NEAR(opposite.x, -1, 1e-5);
-  EXPECT_NEAR(opposite.y, -1, 1e-5);
+  const Vec3f upper_right = times_row_vector({5, 2 + 2, 3 + 4}, matrix);
+  EXPECT_NEAR(upper_right.x, 1, 1e-5);
+  EXPECT_NEAR(upper_right.y, 0, 1e-5);
+  const Vec3f lower_left = times_row_vector({5, 2 - 2, 3 - 4}, matrix);
+  EXPECT_NEAR(lower_left.x, 0, 1e-5);
+  EXPECT_NEAR(lower_left.y, 1, 1e-5);
+  const Vec3f middle = times_row_vector({5, 2, 3}, matrix);
+  EXPECT_NEAR(middle.x, 0.5F, 1e-5);
+  EXPECT_NEAR(middle.y, 0.5F, 1e-5);
 }
 
 TEST(CliFrameMetadata, DepthRunsFromMinusOneToOne) {
@@ -98,7 +103,15 @@ TEST(CliFrameMetadata, OrthographicWidthFollowsTheFrame) {
   const auto matrix = row_vector_matrix(ndc_from_camera(camera, 1.5));
   const Vec3f corner = times_row_vector({3, -2, -1}, matrix);
   EXPECT_NEAR(corner.x, 1, 1e-5);
-  EXPECT_NEAR(corner.y, -1, 1e-5);
+  EXPECT_NEAR(corner.y, 1, 1e-5);
+}
+
+TEST(CliFrameMetadata, TheScreenIsAsWideAsTheFieldOfView) {
+  const auto attributes = frame_attributes(camera_looking_along_x(), 2, {});
+  const auto width = std::find_if(attributes.begin(), attributes.end(),
+                                  [](const auto& attribute) { return attribute.first == "screenWindowWidth"; });
+  ASSERT_NE(width, attributes.end());
+  EXPECT_NEAR(std::get<float>(width->second), 2, 1e-5);  // of 2 m by 1 m a metre away
 }
 
 TEST(CliFrameMetadata, SameFrameHasTheSameAttributes) {
@@ -146,13 +159,28 @@ TEST(CliCameraChoice, UnknownNamesListTheKnown) {
   scene.cameras.resize(2);
   scene.cameras[0].name = "front";
   scene.cameras[1].name = "door";
-  EXPECT_EQ(choose_camera(scene, "", session).name, "front");
-  EXPECT_EQ(choose_camera(scene, "door", session).name, "door");
+  EXPECT_EQ(choose_camera(scene, "", {}, session).name, "front");
+  EXPECT_EQ(choose_camera(scene, "door", {}, session).name, "door");
   try {
-    choose_camera(scene, "window", session);
+    choose_camera(scene, "window", {}, session);
     FAIL() << "no error";
   } catch (const renderer::Error& error) {
     EXPECT_NE(std::string(error.what()).find("front, door"), std::string::npos) << error.what();
+  }
+}
+
+TEST(CliCameraChoice, TheOneForScenesWithoutAnySeesAllInFramesOfAnyShape) {
+  Session session(CommonOptions{.threads = 0, .seed = 0, .json = false, .quiet = true});
+  renderer::Scene scene;
+  test::add_mesh(scene, test::rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), {}, "floor");
+  for (const auto& [width, height] : {std::pair{160, 90}, {60, 180}}) {
+    const Camera camera = choose_camera(scene, "", {width, height}, session);
+    const auto matrix = row_vector_matrix(ndc_from_camera(camera, double(width) / height) *
+                                          renderer::inverse_affine(camera.world_from_camera));
+    for (const Vec3f& corner : {Vec3f{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {1, 0, 1}}) {
+      const Vec3f seen = times_row_vector(corner, matrix);
+      for (int a = 0; a < 2; ++a) EXPECT_TRUE(0 < seen[a] && seen[a] < 1) << width << ' ' << a;
+    }
   }
 }
 

@@ -83,5 +83,20 @@ TEST(CliProgress, FractionsBeyondTheirRangeDoNotBreakTheBar) {
   EXPECT_EQ(progress_line("x", -1, 0, 80), "x [........................]   0 %");
 }
 
+TEST(CliProgress, IsOfAnotherRunWhenAStageStartsOver) {
+  const StageProgress::Clock::time_point start{};
+  const auto at = [&](int seconds) { return start + std::chrono::seconds(seconds); };
+  StageProgress progress;
+  EXPECT_TRUE(progress.update("tracing", 0, at(0)));
+  EXPECT_FALSE(progress.update("tracing", 0.9, at(9)));
+  EXPECT_FALSE(progress.update("tracing", 0.88, at(9)));  // told by another thread
+  EXPECT_EQ(progress.begun(), at(0));
+  EXPECT_TRUE(progress.update("tracing", 0.01, at(10)));
+  EXPECT_EQ(progress.begun(), at(10));
+  EXPECT_FALSE(progress.update("tracing", 0.02, at(12)));
+  EXPECT_TRUE(progress.update("bake", 0.5, at(13)));
+  EXPECT_EQ(progress.begun(), at(13));
+}
+
 }  // namespace
 }  // namespace chiaro::cli

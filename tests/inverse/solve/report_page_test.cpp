@@ -20,12 +20,13 @@ const char* const kNasty = "</script><script>alert(1)</script><!-- \"'& \xff.glb
 struct SmallSolve {
   renderer::Scene scene;
   Target target;
-  Importance importance{{0.5, 0, 1}, {0, 1, 0.5}, {0.5, 1, 1.5}, {1, 2}, {1, 1}};
-  LightGrid grid;
-  LightDistribution distribution;
-  LightEstimates lights{{{0.5, 1, 0.5}, {3, 2, 1}}};
-  LightTree tree{{{{}}, 1}, {{{0.5, 1, 0.5}, {3, 2, 1}}}, {}};
-  std::vector<int> cut{0};
+  SolveStages stages{.importance = {{0.5, 0, 1}, {0, 1, 0.5}, {0.5, 1, 1.5}, {1, 2}, {1, 1}},
+                     .grid = {},
+                     .distribution = {},
+                     .clusters = {{{0.5, 1, 0.5}, {3, 2, 1}}},
+                     .tree = {{{{}}, 1}, {{{0.5, 1, 0.5}, {3, 2, 1}}}, {}},
+                     .cut = {0},
+                     .found = {{{0.5, 1, 0.5}, {3, 2, 1}}}};
   SolveResult result;
 
   SmallSolve() {
@@ -42,9 +43,7 @@ struct SmallSolve {
     result.stages = {{"polish", 1.5, {{"relative_l2", 0.125}}}};
   }
 
-  SolveTrace trace() const {
-    return {scene, target, importance, grid, distribution, lights, tree, cut, lights, result};
-  }
+  SolveTrace trace() const { return {scene, target, stages, result}; }
 };
 
 std::size_t count_of(std::string_view part, std::string_view text) {

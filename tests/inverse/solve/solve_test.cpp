@@ -9,6 +9,7 @@
 
 #include "inverse/numerics/median.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/report.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/world_limits.h"
 #include "tests/inverse/solve/painted_corner.h"
@@ -279,7 +280,7 @@ TEST(Solve, SaysWhatItFound) {
   const Target target = corner.target(known_lights(3), 0);
   const test::TemporaryFolder folder;
   SolveOptions options = quick();
-  options.report_folder = folder.path() / "report";
+  options.keep_stages = true;
   const SolveResult result = solve(problem_of(corner, target, 0), options);
   ASSERT_EQ(result.lights.size(), 3U);
   double contributions = 0;
@@ -299,9 +300,11 @@ TEST(Solve, SaysWhatItFound) {
   EXPECT_LE(seconds, result.total_seconds * 1.01 + 0.01);
   EXPECT_GT(result.initial_seconds, 0);
   EXPECT_GT(result.optimal_seconds, 0);
+  const std::filesystem::path report = folder.path() / "report";
+  write_report(corner.scene(), target, result, report);
   for (const char* name :
        {"report.html", "importance.glb", "target.glb", "found.glb", "difference_x8.glb", "stages.json"}) {
-    EXPECT_TRUE(std::filesystem::exists(options.report_folder / name)) << name;
+    EXPECT_TRUE(std::filesystem::exists(report / name)) << name;
   }
 }
 

@@ -81,13 +81,48 @@ TEST_F(AtomicFile, NamesMayBeAsLongAsTheFileSystemHasThem) {
 
 TEST_F(AtomicFile, IsWrittenThroughNoLink) {
   std::ofstream(folder_ / "victim") << "old";
-  fs::path aside;
-  write_atomically(file(), [&](const fs::path& written) { std::ofstream(aside = written) << "first"; });
-  fs::create_symlink(folder_ / "victim", aside);
+  fs::create_symlink(folder_ / "victim", file());
   write_file_atomically(file(), "second");
   EXPECT_EQ(read_file(folder_ / "victim"), "old");
   EXPECT_FALSE(fs::is_symlink(file()));
   EXPECT_EQ(read_file(file()), "second");
+}
+
+// Other machines and containers that share the folder have processes of the same number.
+TEST_F(AtomicFile, IsWrittenUnderANameOfItsOwn) {
+  write_atomically(file(), [&](const fs::path& first) {
+    std::ofstream(first) << "first";
+    write_atomically(file(), [&](const fs::path& second) {
+      EXPECT_NE(first, second);
+      std::ofstream(second) << "second";
+    });
+    EXPECT_EQ(read_file(file()), "second");
+  });
+  EXPECT_EQ(read_file(file()), "first");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFile, HasThePermissionsOfWhatItReplaces) {
+  write_file_atomically(file(), "old");
+  fs::permissions(file(), fs::perms::owner_read | fs::perms::owner_write);
+  write_file_atomically(file(), "new");
+  EXPECT_EQ(fs::status(file()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(AtomicFile, WhatCannotTakeItsPlaceIsKeptAndNamed) {
+  fs::path written;
+  try {
+    write_atomically(file(), [&](const fs::path& aside) {
+      written = aside;
+      std::ofstream(aside) << "whole";
+      fs::create_directories(file() / "in the way");
+    });
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.parts().file, file().string());
+    EXPECT_NE(error.parts().problem.find(written.string()), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(read_file(written), "whole");
 }
 
 TEST_F(AtomicFile, WritingNothingIsAnError) {

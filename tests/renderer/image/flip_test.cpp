@@ -113,6 +113,16 @@ TEST(Flip, OfBlackReferencesIsANumber) {
   EXPECT_GT(mean(found.error), 0);
 }
 
+TEST(Flip, OfPixelsTooLargeForFeaturesIsANumber) {
+  Image spot = constant(0.5F, 0.5F, 0.5F);
+  const Image plain = spot;
+  spot.pixels[0] = 1;
+  for (const double pixels_per_degree : {1.0, 1.5, 2.0}) {
+    EXPECT_EQ(mean(flip(plain, plain, pixels_per_degree)), 0) << pixels_per_degree;
+    EXPECT_GT(mean(flip(spot, plain, pixels_per_degree)), 0) << pixels_per_degree;
+  }
+}
+
 TEST(Flip, PixelsThatAreNotFiniteCountAsBlack) {
   Image odd = constant(1, 1, 1), black = odd;
   odd.pixels[0] = std::numeric_limits<float>::quiet_NaN();

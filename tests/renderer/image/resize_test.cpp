@@ -1,5 +1,7 @@
 #include "renderer/image/resize.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace chiaro::renderer {
@@ -27,6 +29,19 @@ TEST(Resize, RampsStayRampsAwayFromTheBorder) {
     for (int y = 2; y < height - 2; ++y) {
       for (int x = 2; x < width - 2; ++x) {
         for (int c = 0; c < 2; ++c) ASSERT_NEAR(found.at(x, y)[c], wanted.at(x, y)[c], 1e-5) << width;
+      }
+    }
+  }
+}
+
+TEST(Resize, PixelsThatAreNotFiniteSpreadNoFartherThanTheyWeigh) {
+  Image image = make_image(8, 8, {"Y"});
+  *image.at(3, 4) = std::numeric_limits<float>::infinity();
+  const Image tall = resize(image, 8, 16);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      if (x != 3) {
+        EXPECT_EQ(*tall.at(x, y), 0) << x << ' ' << y;
       }
     }
   }

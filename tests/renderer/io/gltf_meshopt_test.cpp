@@ -232,5 +232,18 @@ TEST(Meshopt, WhatCannotBeIsRefusedByPlace) {
   }
 }
 
+// Each view is small enough for its bytes, which all of them have.
+TEST(Meshopt, ViewsOfTheSameBytesAreRefusedBeforeTheyTakeMemory) {
+  GltfBuilder gltf = packed_scene(false);
+  ordered_json view = gltf.root["bufferViews"][0];
+  ordered_json& packed = view["extensions"]["EXT_meshopt_compression"];
+  const std::size_t length = packed["byteLength"], stride = packed["byteStride"];
+  packed["count"] = 60 * (length / stride);
+  view["byteLength"] = 60 * (length / stride) * stride;
+  for (int i = 0; i < 30000; ++i) gltf.root["bufferViews"].push_back(view);
+  const std::string message = error_of([&] { load(gltf); });
+  EXPECT_NE(message.find("come of buffers of"), std::string::npos) << message.substr(0, 300);
+}
+
 }  // namespace
 }  // namespace chiaro::renderer::tests

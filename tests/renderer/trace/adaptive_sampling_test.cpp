@@ -51,7 +51,8 @@ TEST(AdaptiveSampling, WithoutThresholdEveryPixelHasTheSamplesAskedFor) {
     Film film(20, 11, {}, {}, samples);
     run(film, 0, 1, [](std::size_t, float) { return 1.0F; });
     for (std::size_t tile = 0; tile < film.tile_count(); ++tile) EXPECT_EQ(film.tile_samples(tile), samples);
-    const Image image = film.finish();
+    Image image = film.blank();
+    film.finish(image);
     for (int y = 0; y < 11; ++y) {
       for (int x = 0; x < 20; ++x) EXPECT_FLOAT_EQ(image.at(x, y)[0], 1);
     }
@@ -87,7 +88,8 @@ TEST(AdaptiveSampling, StoppingDoesNotBiasTheMean) {
   for (int frame = 0; frame < kFrames; ++frame) {
     Film film(256, 256, {"variance", "samples"}, {}, 512);
     run(film, 0.8, std::uint64_t(frame), spike);
-    const Image image = film.finish();
+    Image image = film.blank();
+    film.finish(image);
     sum += mean_of(image) / kFrames;
     for (std::size_t i = 0; i < image.pixels.size(); i += image.channel_names.size()) {
       variance += double(image.pixels[i + 4]);

@@ -306,7 +306,27 @@ TEST(BsdfLayers, HemisphericalAlbedoIsWhatIsReflected) {
       const auto s = bsdf.sample(viewer, u, sampler.next_1d());
       if (s && s->direction.z > 0) mean += double(s->weight.x) / kCount;
     }
-    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.03) << name;
+    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.02) << name;
+  }
+}
+
+TEST(BsdfLayers, HemisphericalAlbedoOfClearcoatsIsWhatIsReflected) {
+  for (const float roughness : {0.25F, 0.5F, 1.0F}) {
+    for (const float of_coat : {0.0F, 0.25F, 0.5F, 1.0F}) {
+      SurfacePoint point = layered_point({0.6F, 0.6F, 0.6F}, 0, roughness);
+      point.layers->clearcoat = 1;
+      point.layers->clearcoat_roughness = of_coat;
+      const Bsdf bsdf(point);
+      double mean = 0;
+      constexpr int kCount = 1 << 15;
+      for (int i = 0; i < kCount; ++i) {
+        Sampler sampler(3, 0, std::uint32_t(i));
+        const Vec3f viewer = sample_cosine_hemisphere(sampler.next_2d());
+        const Vec2f u = sampler.next_2d();
+        if (const auto s = bsdf.sample(viewer, u, sampler.next_1d())) mean += double(s->weight.x) / kCount;
+      }
+      EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.003) << roughness << ' ' << of_coat;
+    }
   }
 }
 
