@@ -86,7 +86,7 @@ void warn_of_idle_options(const BakeCommand& options, Session& session) {
 
 int run_bake(const BakeCommand& options) {
   Session session(options.common);
-  session.require_outputs({options.output, inverse::unfinished_bake(options.output)});
+  session.require_outputs(inverse::files_of_bake(options.output));
   const LoadedStage stage = load_stage(options.scene, options.transport.load, options.transport.materials, session);
   environment_of(stage, options.transport.environment, session);  // refused where a solve would refuse it
   warn_of_idle_options(options, session);

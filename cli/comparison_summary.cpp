@@ -1,5 +1,7 @@
 #include "cli/comparison_summary.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "cli/text_output.h"
@@ -39,15 +41,23 @@ JsonObject summary_of(const Figures& f, JsonList max_at) {
           {"max_at", std::move(max_at)}};
 }
 
+std::string text_of(double figure, const std::string& unit = "") {
+  return std::isnan(figure) ? "not known" : fmt::format("{:.4g}{}", figure, unit);
+}
+
+std::string text_of_mean(Vec3f mean, const std::string& unit) {
+  return renderer::is_finite(mean) ? text_of_vector(mean) + unit : "not known";
+}
+
 // unit: of what is compared, after a blank; empty: it has none.
 std::vector<TextRow> rows_of(const Figures& f, const std::string& unit, const std::string& place) {
   return {{"relative L2", text_of_percent(f.relative_l2)},
-          {"RMSE", fmt::format("{:.4g}{}", f.rmse, unit)},
-          {"relative MSE", fmt::format("{:.4g}", f.relative_mse)},
-          {"PSNR", fmt::format("{:.4g} dB", f.psnr)},
-          {"mean of A", text_of_vector(f.mean_a) + unit},
-          {"mean of B", text_of_vector(f.mean_b) + unit},
-          {"largest difference", fmt::format("{:.4g}{} at {}", f.max_difference, unit, place)}};
+          {"RMSE", text_of(f.rmse, unit)},
+          {"relative MSE", text_of(f.relative_mse)},
+          {"PSNR", text_of(f.psnr, " dB")},
+          {"mean of A", text_of_mean(f.mean_a, unit)},
+          {"mean of B", text_of_mean(f.mean_b, unit)},
+          {"largest difference", fmt::format("{} at {}", text_of(f.max_difference, unit), place)}};
 }
 
 using Channels = std::array<renderer::ChannelComparison, 3>;
@@ -83,14 +93,14 @@ JsonObject summary_of(const NamedRegion& region, const FrameFigures& figures) {
   return summary;
 }
 
-std::string text_of(const std::optional<double>& flip) { return flip ? fmt::format("{:.4g}", *flip) : "-"; }
+std::string text_of(const std::optional<double>& flip) { return flip ? text_of(*flip) : "-"; }
 
 std::string channel_table(const Channels& channels) {
   std::vector<Row> rows{{"channel", "relative L2", "RMSE", "PSNR", "largest"}};
   for (std::size_t i = 0; i < 3; ++i) {
     const renderer::ChannelComparison& f = channels[i];
-    rows.push_back({std::string(1, "RGB"[i]), text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
-                    fmt::format("{:.4g}", f.psnr), fmt::format("{:.4g}", f.max_difference)});
+    rows.push_back({std::string(1, "RGB"[i]), text_of_percent(f.relative_l2), text_of(f.rmse), text_of(f.psnr),
+                    text_of(f.max_difference)});
   }
   return table(rows);
 }
@@ -100,9 +110,8 @@ std::string region_table(const FrameComparison& comparison) {
   std::vector<Row> rows{{"region", "relative L2", "RMSE", "PSNR", "largest", "FLIP", "HDR-FLIP"}};
   for (std::size_t i = 0; i < comparison.regions.size(); ++i) {
     const FrameFigures& f = comparison.of_regions[i];
-    rows.push_back({comparison.regions[i].name, text_of_percent(f.image.relative_l2),
-                    fmt::format("{:.4g}", f.image.rmse), fmt::format("{:.4g}", f.image.psnr),
-                    fmt::format("{:.4g}", f.image.max_difference), text_of(f.flip), text_of(f.flip_hdr)});
+    rows.push_back({comparison.regions[i].name, text_of_percent(f.image.relative_l2), text_of(f.image.rmse),
+                    text_of(f.image.psnr), text_of(f.image.max_difference), text_of(f.flip), text_of(f.flip_hdr)});
   }
   return "\n" + table(rows);
 }
@@ -126,8 +135,7 @@ std::string surface_table(const inverse::TargetComparison& comparison) {
   if (comparison.surfaces.size() < 2 || comparison.surfaces.size() > kMostRows) return "";
   std::vector<Row> rows{{"surface", "relative L2", "RMSE", "largest"}};
   for (const inverse::SurfaceComparison& f : comparison.surfaces) {
-    rows.push_back({f.name, text_of_percent(f.relative_l2), fmt::format("{:.4g}", f.rmse),
-                    fmt::format("{:.4g}", f.max_difference)});
+    rows.push_back({f.name, text_of_percent(f.relative_l2), text_of(f.rmse), text_of(f.max_difference)});
   }
   return "\n" + table(rows);
 }

@@ -37,7 +37,8 @@ std::string option_of(std::string key) {
 
 // The option, or the file and the key in it.
 std::string name_as_given(const ConstraintOptions& options, const std::string& key) {
-  return was_given(*options.command, option_of(key)) ? option_of(key) : fmt::format("{}: {}", options.file, key);
+  const bool by_option = options.command != nullptr && was_given(*options.command, option_of(key));
+  return by_option ? option_of(key) : fmt::format("{}: {}", options.file, key);
 }
 
 }  // namespace

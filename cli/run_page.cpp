@@ -5,6 +5,7 @@
 #include "cli/common_options.h"
 #include "cli/embedded_file.h"
 #include "cli/html.h"
+#include "cli/solve_options.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -25,13 +26,13 @@ std::string figures(const RunPage& page) {
 
 std::string remarks(const inverse::SolveResult& result) {
   std::string text = "Ended: " + result.termination + ".";
-  for (const auto& [one, other] : result.not_told_apart) {
-    text += fmt::format(" Of lights {} and {} only the sum is known.", one, other);
+  for (const std::vector<int>& group : groups_not_told_apart(result)) {
+    text += fmt::format(" Of lights {} only the sum is known.", text_of_list(group));
   }
   for (const inverse::NotReached& place : result.not_reached) {
-    text +=
-        fmt::format(" “{}” is too {} near {} m ({} of the error).", place.node, place.excess < 0 ? "dark" : "bright",
-                    text_of_vector(place.position), text_of_percent(place.share));
+    const char* what = place.other_color ? "has another colour" : place.excess < 0 ? "is too dark" : "is too bright";
+    text += fmt::format(" “{}” {} near {} m ({} of the error).", place.node, what, text_of_vector(place.position),
+                        text_of_percent(place.share));
   }
   return html_escaped(result.advice.empty() ? text : text + " Advice: " + result.advice + ".");
 }

@@ -47,4 +47,8 @@ void save_found_lights(const LoadedStage& stage, const inverse::SolveResult& res
 JsonObject solve_summary(const inverse::SolveResult& result);
 std::string solve_text(const inverse::SolveResult& result);
 
+// The lights of pairs that are not told apart, by their numbers: those that pairs link together.
+std::vector<std::vector<int>> groups_not_told_apart(const inverse::SolveResult& result);
+std::string text_of_list(const std::vector<int>& numbers);  // "1, 2 and 5"
+
 }  // namespace chiaro::cli

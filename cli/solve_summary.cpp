@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/solve_options.h"
 #include "cli/text_output.h"
@@ -52,6 +55,7 @@ JsonObject curve_point(const inverse::LightSet& set) {
 JsonObject place_summary(const inverse::NotReached& place) {
   JsonObject summary{{"node", place.node}, {"position", place.position}, {"share_of_error", place.share}};
   if (place.wanted > 0) summary.emplace_back("relative_excess", place.excess / place.wanted);
+  if (place.other_color) summary.emplace_back("other_color", true);
   return summary;
 }
 
@@ -60,8 +64,10 @@ std::string text_of_place(const inverse::NotReached& place) {
   const std::string by = place.wanted > 0 && std::abs(place.excess) < kMostPercent * place.wanted
                              ? text_of_percent(std::abs(place.excess) / place.wanted) + " too "
                              : "far too ";
-  return fmt::format("{} near {} m is {}{} ({} of the error)", place.node, text_of_vector(place.position), by,
-                     place.excess < 0 ? "dark" : "bright", text_of_percent(place.share));
+  const std::string what =
+      place.other_color ? "has another colour" : "is " + by + (place.excess < 0 ? "dark" : "bright");
+  return fmt::format("{} near {} m {} ({} of the error)", place.node, text_of_vector(place.position), what,
+                     text_of_percent(place.share));
 }
 
 std::string text_of_places(const std::vector<inverse::NotReached>& places) {
@@ -135,6 +141,28 @@ JsonObject solve_summary(const inverse::SolveResult& result) {
           {"termination", result.termination}};
 }
 
+std::vector<std::vector<int>> groups_not_told_apart(const inverse::SolveResult& result) {
+  std::vector<std::set<int>> groups;
+  for (const auto& [one, other] : result.not_told_apart) {
+    std::set<int> linked{one, other};
+    std::erase_if(groups, [&](std::set<int>& group) {
+      const bool shared = group.contains(one) || group.contains(other);
+      if (shared) linked.merge(group);
+      return shared;
+    });
+    groups.push_back(std::move(linked));
+  }
+  std::vector<std::vector<int>> lists;
+  for (const std::set<int>& group : groups) lists.emplace_back(group.begin(), group.end());
+  std::sort(lists.begin(), lists.end());
+  return lists;
+}
+
+std::string text_of_list(const std::vector<int>& numbers) {
+  if (numbers.size() < 2) return fmt::format("{}", fmt::join(numbers, ""));
+  return fmt::format("{} and {}", fmt::join(numbers.begin(), numbers.end() - 1, ", "), numbers.back());
+}
+
 std::string solve_text(const inverse::SolveResult& result) {
   std::vector<TextRow> rows{{"error, traced afresh", text_of_percent(result.relative_l2)},
                             {"error by the cache", text_of_percent(result.relative_l2_cached)},
@@ -143,8 +171,8 @@ std::string solve_text(const inverse::SolveResult& result) {
   if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
   if (!result.error_curve.empty())
     rows.emplace_back("in the search, by number of lights", text_of_curve(result.error_curve));
-  for (const auto& [one, other] : result.not_told_apart) {
-    rows.emplace_back("not told apart", fmt::format("lights {} and {}: only their sum is known", one, other));
+  for (const std::vector<int>& group : groups_not_told_apart(result)) {
+    rows.emplace_back("not told apart", fmt::format("lights {}: only their sum is known", text_of_list(group)));
   }
   if (!result.not_reached.empty()) rows.emplace_back("not reached", text_of_places(result.not_reached));
   if (!result.advice.empty()) rows.emplace_back("advice", result.advice);

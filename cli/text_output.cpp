@@ -56,7 +56,7 @@ std::string text_of_seconds(double seconds) {
 }
 
 std::string text_of_percent(std::optional<double> fraction) {
-  return fraction ? fmt::format("{:.3g} %", 100 * *fraction) : "not known";
+  return fraction && !std::isnan(*fraction) ? fmt::format("{:.3g} %", 100 * *fraction) : "not known";
 }
 
 std::string text_of_bytes(double bytes) {

@@ -159,7 +159,7 @@ class Search {
     if (refined.error < best_[count].error) best_[count] = {std::move(refined.lights), refined.error, {}};
   }
 
-  // Until larger ones explain no more.
+  // Until larger ones explain no more. Those that time does not allow for count as they are.
   void refine_cuts() {
     const int sizes = std::min({tree_.tree.leaf_count, most_searched(), kMostCuts});
     for (int size = 1; size <= sizes && !out_of_time(); size += kCutsAtOnce) {
@@ -171,6 +171,9 @@ class Search {
       cuts_are_enough_ = little_is_left() && int(knee()) + kIdleCuts < size + int(cuts.size());
       if (cuts_are_enough_) break;
     }
+    if (!out_of_time()) return;
+    for (int size = 1; size <= sizes; ++size)
+      keep_as_it_is(cut_light_tree(tree_, observations_, {0, size, size}).lights);
   }
 
   bool little_is_left() const { return least_error() <= std::max(kNoise * observations_.noise, kRounding); }

@@ -3,6 +3,15 @@
 #include <algorithm>
 
 namespace chiaro::inverse {
+namespace {
+
+// Of the first set of as many, or of more.
+std::vector<LightSet>::iterator place_of(const LightSet& set, std::vector<LightSet>& curve) {
+  return std::find_if(curve.begin(), curve.end(),
+                      [&](const LightSet& other) { return other.lights.size() >= set.lights.size(); });
+}
+
+}  // namespace
 
 LightSet set_of(const LightEstimates& lights, double relative_l2) {
   LightSet set{{}, relative_l2};
@@ -15,13 +24,18 @@ void put_in_curve(LightSet set, std::vector<LightSet>& curve) {
     return other.lights.size() <= set.lights.size() && other.relative_l2 <= set.relative_l2;
   };
   if (set.lights.empty() || std::any_of(curve.begin(), curve.end(), as_good)) return;
-  const auto at = std::find_if(curve.begin(), curve.end(),
-                               [&](const LightSet& other) { return other.lights.size() >= set.lights.size(); });
+  const auto at = place_of(set, curve);
   if (at != curve.end() && at->lights.size() == set.lights.size()) {
     *at = std::move(set);
   } else {
     curve.insert(at, std::move(set));
   }
+}
+
+void have_in_curve(LightSet set, std::vector<LightSet>& curve) {
+  const auto at = place_of(set, curve);
+  if (set.lights.empty() || (at != curve.end() && at->lights.size() == set.lights.size())) return;
+  curve.insert(at, std::move(set));
 }
 
 LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {

@@ -11,6 +11,9 @@ LightSet set_of(const LightEstimates& lights, double relative_l2);
 // In place of the set of as many that is there, if any, unless that or a smaller one is as good.
 void put_in_curve(LightSet set, std::vector<LightSet>& curve);
 
+// Where there is none of as many.
+void have_in_curve(LightSet set, std::vector<LightSet>& curve);
+
 // One light more never makes a set worse, however the search came by it. Lights may share places.
 void let_none_be_worse_than_fewer(std::vector<LightSet>& curve);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kShare = 0.001;      // of the brightest light, for a light that would be dark
+constexpr double kShare = 1e-5;       // of the brightest light, for a light that would be dark
 constexpr std::size_t kStarts = 12;   // of all arrangements from scratch
 constexpr std::size_t kFarthest = 8;  // places that are tried beside lights that make room
 
@@ -43,7 +43,8 @@ class FillingUp {
     return response_.places().has_room(further, positions);
   }
 
-  // At the candidate that explains most of what is left, all others staying where they are.
+  // At the candidate that explains most of what is left, all others staying where they are; where none explains any, at
+  // the one whose light brings least.
   bool add_beside(LightEstimates& lights) const {
     const std::vector<Vector3d> positions = positions_of(lights);
     LightEstimates fitting;
@@ -53,12 +54,15 @@ class FillingUp {
     if (fitting.empty()) return false;
     if (limits_.clock.out_of_time()) fitting.resize(1);
     const Observations left = less(observations_, response_, lights);
-    std::vector<double> gain(fitting.size());
+    std::vector<double> gain(fitting.size()), brought(fitting.size());
     renderer::parallel_for(fitting.size(), "filling up", limits_.control.without_progress(), [&](std::size_t k) {
       const Column column = evaluate_column(response_, fitting[k], Evaluation::kTracedVisibility);
       gain[k] = fit_intensity(left, column, fitting[k]);
+      brought[k] = contribution_norm(left, column, Eigen::Array3d::Ones());
     });
-    lights.push_back(fitting[std::size_t(std::max_element(gain.begin(), gain.end()) - gain.begin())]);
+    const auto most = std::max_element(gain.begin(), gain.end()),
+               least = std::min_element(brought.begin(), brought.end());
+    lights.push_back(fitting[std::size_t(*most > 0 ? most - gain.begin() : least - brought.begin())]);
     return true;
   }
 

@@ -11,6 +11,7 @@
 #include "inverse/solve/check_brightness.h"
 #include "inverse/solve/check_lights_in_place.h"
 #include "inverse/solve/fit_traced_columns.h"
+#include "inverse/solve/known_directions.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/observe_target.h"
 #include "inverse/solve/stage_clock.h"
@@ -61,17 +62,24 @@ TracedColumns trace_columns(const SolveProblem& problem, const renderer::Lights&
 }
 
 struct ChannelErrors {
+  KnownDirections directions;
   Eigen::MatrixXd covariance;  // lights × lights
   Eigen::VectorXd freedom;     // degrees of freedom that each light's variance is known by
 };
 
-// Half of an interval that holds 90 %, by Student's distribution, in standard deviations.
-double half_width(double freedom) { return kNinety + (std::pow(kNinety, 3) + kNinety) / (4 * freedom); }
+// Half of an interval that holds 90 %, by Student's distribution, in standard deviations. Source: Abramowitz, Stegun,
+// Handbook of Mathematical Functions, 1964, 26.7.5.
+double half_width(double freedom) {
+  const double z = kNinety, z3 = std::pow(z, 3), z5 = std::pow(z, 5), z7 = std::pow(z, 7);
+  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * std::pow(freedom, 2)) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * std::pow(freedom, 3));
+}
 
 // Of one channel's intensities, by what the fit leaves at each receiver (sandwich estimate), as light_intervals(). The
 // columns' noise, which makes lights look unlike each other that are not, is not that of the same columns traced again:
-// these are the instruments. The few receivers beside a lamp may have nearly all to say of it; so many degrees of
-// freedom does their noise leave: Satterthwaite, An Approximate Distribution of Estimates of Variance Components, 1946.
+// these are the instruments. In directions where next to nothing but noise is left nothing is known. The few receivers
+// beside a lamp may have nearly all to say of it; so many degrees of freedom does their noise leave: Satterthwaite, An
+// Approximate Distribution of Estimates of Variance Components, 1946.
 ChannelErrors errors_of_channel(const Observations& observations, const TracedColumns& traced, const Column& residual,
                                 int channel) {
   const auto weighted = [&](const std::vector<Column>& columns) {
@@ -82,19 +90,50 @@ ChannelErrors errors_of_channel(const Observations& observations, const TracedCo
     return a;
   };
   const Eigen::MatrixXd instruments = weighted(traced.again), columns = weighted(traced.columns);
-  const Eigen::MatrixXd inverse = (instruments.transpose() * columns).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd product = instruments.transpose() * columns;
+  const Eigen::MatrixXd with_noise = (instruments.transpose() * instruments + columns.transpose() * columns) / 2;
+  ChannelErrors errors;
+  errors.directions = known_directions(with_noise, [&](double eigenvalue, const Eigen::VectorXd& direction) {
+    const Eigen::VectorXd scale =
+        with_noise.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
+    const Eigen::VectorXd at = scale.cwiseProduct(direction);
+    return at.dot(product * at) >= kLeastSure * eigenvalue;
+  });
+  const Eigen::MatrixXd& basis = errors.directions.basis;
+  const Eigen::MatrixXd inverse =
+      basis * (basis.transpose() * product * basis).completeOrthogonalDecomposition().pseudoInverse() *
+      basis.transpose();
   // What each receiver would leave if it were left out of the fit, which the few beside a lamp lead to themselves.
   const Eigen::VectorXd leverage = (columns * inverse).cwiseProduct(instruments).rowwise().sum();
   const Eigen::VectorXd left = observations.sqrt_weight.cwiseProduct(residual.col(channel))
                                    .cwiseQuotient((1 - leverage.array()).max(kLeastOutside).matrix());
   const Eigen::MatrixXd pull = left.asDiagonal() * instruments * inverse.transpose();
-  ChannelErrors errors{pull.transpose() * pull, {}};
+  errors.covariance = pull.transpose() * pull;
   const Eigen::ArrayXd fourth = pull.array().square().square().colwise().sum();
-  errors.freedom = (3 * errors.covariance.diagonal().array().square() / fourth.max(1e-300)).max(1);
+  errors.freedom = (errors.covariance.diagonal().array().square() / fourth.max(1e-300)).max(1);
   for (Eigen::Index j = 0; j < pull.cols(); ++j) {
-    if (!(instruments.col(j).squaredNorm() > 0)) errors.covariance(j, j) = std::numeric_limits<double>::infinity();
+    if (!errors.directions.knows(j)) errors.covariance(j, j) = std::numeric_limits<double>::infinity();
   }
   return errors;
+}
+
+// Of one channel, of the lights that may shine in it.
+void find_confounded(const ChannelErrors& errors, const std::vector<Eigen::Array3d>& intensity, int channel,
+                     std::set<std::pair<std::size_t, std::size_t>>& pairs) {
+  std::vector<Eigen::Index> shining;
+  for (std::size_t j = 0; j < intensity.size(); ++j) {
+    if (may_shine(intensity[j], channel)) shining.push_back(Eigen::Index(j));
+  }
+  for (const auto& [j, k] : pairs_known_by_sum(errors.directions, shining)) pairs.emplace(shining[j], shining[k]);
+  for (const Eigen::Index a : shining) {
+    for (const Eigen::Index b : shining) {
+      if (a >= b) continue;
+      const double dimmer = std::min(intensity[std::size_t(a)][channel], intensity[std::size_t(b)][channel]);
+      if (only_their_sum_is_known(errors.covariance(a, a), errors.covariance(b, b), errors.covariance(a, b), dimmer)) {
+        pairs.emplace(a, b);
+      }
+    }
+  }
 }
 
 // Half widths of intensities; of positions, which stay, none. Infinite where a light brings nothing.
@@ -105,19 +144,12 @@ LightIntervals intervals_of(const Observations& observations, const TracedColumn
   LightIntervals intervals{std::vector<LightInterval>(intensity.size(), {Eigen::Vector3d::Zero(), {}}), {}};
   std::set<std::pair<std::size_t, std::size_t>> confounded;
   for (int c = 0; c < 3; ++c) {
-    const auto [covariance, freedom] = errors_of_channel(observations, traced, residual, c);
-    const Eigen::VectorXd variance = covariance.diagonal();
+    const ChannelErrors errors = errors_of_channel(observations, traced, residual, c);
     for (std::size_t j = 0; j < intensity.size(); ++j) {
-      const double half = half_width(freedom[Eigen::Index(j)]);
-      intervals.lights[j].intensity[c] = half * std::sqrt(variance[Eigen::Index(j)]);
-      for (std::size_t k = j + 1; k < intensity.size(); ++k) {
-        const auto a = Eigen::Index(j), b = Eigen::Index(k);
-        const double dimmer = std::min(intensity[j][c], intensity[k][c]);
-        if (may_shine(intensity[j], c) && may_shine(intensity[k], c) &&
-            only_their_sum_is_known(variance[a], variance[b], covariance(a, b), dimmer))
-          confounded.emplace(j, k);
-      }
+      const auto at = Eigen::Index(j);
+      intervals.lights[j].intensity[c] = half_width(errors.freedom[at]) * std::sqrt(errors.covariance(at, at));
     }
+    find_confounded(errors, intensity, c, confounded);
   }
   intervals.confounded.assign(confounded.begin(), confounded.end());
   return intervals;

@@ -5,7 +5,6 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kLeastSure = 0.1;   // of a direction's AᵀA at least, however much of it is noise
 constexpr double kRounding = 1e-10;  // of a column's square
 
 // A′ᵀA, made symmetric. Where columns are hardly told apart noise may leave next to nothing of it, or less, and so much

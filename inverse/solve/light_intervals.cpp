@@ -3,19 +3,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <Eigen/Eigenvalues>
 
+#include "inverse/solve/known_directions.h"
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 namespace {
 
 constexpr int kParameters = 6;          // of a light: x, y, z, red, green, blue
-constexpr double kOpposed = 0.9;        // correlation, and less than its negative: one makes good what the other lacks
+constexpr double kMoreSure = 0.45;      // of a standard deviation, or less, is that of the sum
 constexpr double kDarkChannel = 0.01;   // of the light's brightest
-constexpr double kWhollySeen = 0.999;   // of a parameter, by the directions in which instruments tell something
-constexpr double kUnknown = 1e-10;      // eigenvalue, of a matrix of unit diagonal: nothing is known in that direction
 constexpr double kLeastOutside = 0.01;  // of what a receiver leaves, as far as the others decide it
 
 // Receivers × parameters, by what one channel shows of them.
@@ -41,30 +41,11 @@ Eigen::MatrixXd product_of(const Derivatives& instruments, const Derivatives& de
   return products[0] + products[1] + products[2];
 }
 
-struct Inverse {
-  Eigen::MatrixXd matrix;   // pseudoinverse of instruments × derivatives
-  std::vector<bool> known;  // the instruments tell of this parameter
-};
-
-Inverse invert(const FitAtRest& fit) {
-  const Eigen::MatrixXd normal = product_of(fit.instruments, fit.instruments, fit.weight);
-  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * normal * scale.asDiagonal());
-  Inverse result;
-  std::vector<Eigen::Index> seen;  // directions in which the instruments tell something
-  for (Eigen::Index e = 0; e < scale.size(); ++e) {
-    if (eigen.eigenvalues()[e] > kUnknown) seen.push_back(e);
-  }
-  const Eigen::MatrixXd basis = scale.asDiagonal() * eigen.eigenvectors()(Eigen::all, seen);
-  result.matrix = Eigen::MatrixXd::Zero(scale.size(), scale.size());
-  if (!seen.empty()) {
-    const Eigen::MatrixXd product = product_of(fit.instruments, fit.derivatives, fit.weight);
-    result.matrix = basis * (basis.transpose() * product * basis).inverse() * basis.transpose();
-  }
-  for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    result.known.push_back(scale[k] > 0 && eigen.eigenvectors()(k, seen).squaredNorm() >= kWhollySeen);
-  }
-  return result;
+// Pseudoinverse of instruments × derivatives, where the instruments tell something.
+Eigen::MatrixXd inverse_of(const FitAtRest& fit, const Eigen::MatrixXd& basis) {
+  if (basis.cols() == 0) return Eigen::MatrixXd::Zero(basis.rows(), basis.rows());
+  const Eigen::MatrixXd product = product_of(fit.instruments, fit.derivatives, fit.weight);
+  return basis * (basis.transpose() * product * basis).inverse() * basis.transpose();
 }
 
 // What receivers `first` … would leave if each of them were left out of the fit.
@@ -106,16 +87,26 @@ Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
   return pulls;
 }
 
-// In a channel that both may shine in.
-bool only_the_sum_is_known(const Eigen::MatrixXd& covariance, const LightEstimates& lights, std::size_t j,
-                           std::size_t k) {
-  for (int c = 0; c < 3; ++c) {
-    if (!may_shine(lights[j].intensity, c) || !may_shine(lights[k].intensity, c)) continue;
-    const auto a = Eigen::Index(kParameters * j + 3) + c, b = Eigen::Index(kParameters * k + 3) + c;
-    const double dimmer = std::min(lights[j].intensity[c], lights[k].intensity[c]);
-    if (only_their_sum_is_known(covariance(a, a), covariance(b, b), covariance(a, b), dimmer)) return true;
+// Of one channel, of the lights that may shine in it.
+void find_confounded(const KnownDirections& directions, const Eigen::MatrixXd& covariance, const LightEstimates& lights,
+                     int channel, std::set<std::pair<std::size_t, std::size_t>>& pairs) {
+  std::vector<std::size_t> shining;
+  std::vector<Eigen::Index> parameters;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    if (!may_shine(lights[l].intensity, channel)) continue;
+    shining.push_back(l);
+    parameters.push_back(Eigen::Index(kParameters * l + 3) + channel);
   }
-  return false;
+  for (const auto& [j, k] : pairs_known_by_sum(directions, parameters)) pairs.emplace(shining[j], shining[k]);
+  for (std::size_t j = 0; j < shining.size(); ++j) {
+    for (std::size_t k = j + 1; k < shining.size(); ++k) {
+      const Eigen::Index a = parameters[j], b = parameters[k];
+      const double dimmer = std::min(lights[shining[j]].intensity[channel], lights[shining[k]].intensity[channel]);
+      if (only_their_sum_is_known(covariance(a, a), covariance(b, b), covariance(a, b), dimmer)) {
+        pairs.emplace(shining[j], shining[k]);
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -125,9 +116,10 @@ bool may_shine(const Eigen::Array3d& intensity, int channel) {
 }
 
 bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer) {
-  const double one = std::sqrt(variance), other = std::sqrt(other_variance);
-  if (std::isinf(one) && std::isinf(other)) return true;
-  return covariance < -kOpposed * one * other && kNinety * std::min(one, other) > dimmer;
+  if (std::isinf(variance) || std::isinf(other_variance)) return false;
+  const double less = std::sqrt(std::min(variance, other_variance));
+  const double of_sum = std::sqrt(std::max(0.0, variance + other_variance + 2 * covariance));
+  return of_sum < kMoreSure * less && kNinety * less > dimmer;
 }
 
 LightIntervals unknown_intervals(std::size_t lights) {
@@ -141,11 +133,11 @@ Derivatives derivatives_of(const std::vector<ColumnWithGradient>& columns, const
 }
 
 LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& lights) {
-  const Inverse inverse = invert(fit);
-  const Eigen::MatrixXd pull = pulls_of(fit, inverse.matrix);
-  Eigen::MatrixXd covariance = inverse.matrix * (pull.transpose() * pull) * inverse.matrix.transpose();
+  const KnownDirections directions = known_directions(product_of(fit.instruments, fit.instruments, fit.weight));
+  const Eigen::MatrixXd inverse = inverse_of(fit, directions.basis), pull = pulls_of(fit, inverse);
+  Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse.transpose();
   for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
-    if (!inverse.known[std::size_t(k)]) covariance(k, k) = std::numeric_limits<double>::infinity();
+    if (!directions.knows(k)) covariance(k, k) = std::numeric_limits<double>::infinity();
   }
   LightIntervals intervals;
   for (std::size_t l = 0; l < lights.size(); ++l) {
@@ -153,11 +145,9 @@ LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& light
         kNinety * covariance.diagonal().segment<kParameters>(Eigen::Index(kParameters * l)).cwiseSqrt();
     intervals.lights.push_back({half.head<3>(), half.tail<3>()});
   }
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    for (std::size_t k = j + 1; k < lights.size(); ++k) {
-      if (only_the_sum_is_known(covariance, lights, j, k)) intervals.confounded.emplace_back(j, k);
-    }
-  }
+  std::set<std::pair<std::size_t, std::size_t>> confounded;
+  for (int c = 0; c < 3; ++c) find_confounded(directions, covariance, lights, c, confounded);
+  intervals.confounded.assign(confounded.begin(), confounded.end());
   return intervals;
 }
 

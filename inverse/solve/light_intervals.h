@@ -13,8 +13,9 @@ struct LightInterval {
 };
 
 struct LightIntervals {
-  std::vector<LightInterval> lights;                            // in their order
-  std::vector<std::pair<std::size_t, std::size_t>> confounded;  // only the sum of both intensities is known
+  std::vector<LightInterval> lights;  // in their order
+  // Of intensities only the sum is known: of the two, or of all that are linked by such pairs.
+  std::vector<std::pair<std::size_t, std::size_t>> confounded;
 };
 
 // Of more nothing is computed: time and memory grow with their third and second power.
@@ -25,7 +26,8 @@ inline constexpr double kNinety = 1.645;  // standard deviations to either side
 // Whether a light's colour has enough of a channel to say anything by; one that is dark may have any colour.
 bool may_shine(const Eigen::Array3d& intensity, int channel);
 
-// Of two intensities of one channel: what one light has more the other has less, by as much as the dimmer one shines.
+// Of two intensities of one channel: what one light has more the other has less, by as much as the dimmer one shines,
+// and their sum is known far better than each. Of none that is not known at all.
 bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer);
 
 // All infinite.

@@ -52,13 +52,19 @@ std::vector<Column> traced_again(const SolveProblem& problem, const renderer::Tr
   return unity;
 }
 
-// The trace becomes that of lights that grew so.
+// The trace becomes that of lights that grew so, and its noise as much more or less as its light.
 void follow(const std::vector<Eigen::Array3d>& grown, FreshTrace& traced) {
+  const std::vector<Vec3f> before = traced.all.value;
   for (std::size_t j = 0; j < grown.size(); ++j) {
     const Vec3f change = to_vec3f((grown[j] - 1).matrix());
     for (std::size_t i = 0; i < traced.all.value.size(); ++i) traced.all.value[i] += change * traced.of_light[j][i];
   }
   for (Vec3f& value : traced.all.value) value = max(value, Vec3f{});  // what was taken off may be more, by rounding
+  for (std::size_t i = 0; i < traced.all.standard_error.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      if (before[i][c] > 0) traced.all.standard_error[i][c] *= traced.all.value[i][c] / before[i][c];
+    }
+  }
 }
 
 // As many lights: where they may share places the trace remains what it is.

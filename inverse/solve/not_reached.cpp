@@ -24,6 +24,7 @@ constexpr double kClear = 0.5;               // of what is wanted or found, whic
 constexpr double kLit = 0.25;                // in mean brightness: it is not in the dark …
 constexpr std::size_t kLeastReceivers = 12;  // … and no accident
 constexpr std::size_t kMostPlaces = 3;
+constexpr double kHue = 0.5;          // of the root mean square over channels, that less luminance is off
 constexpr double kStillFalls = 0.95;  // of the error, or less, by the last light
 
 // Part, the error's sign, and a cell of space.
@@ -31,6 +32,7 @@ using Cell = std::array<long, 5>;
 
 struct Sums {
   double squared = 0, wanted = 0, found = 0;
+  Vec3f excess;  // found − wanted
   std::size_t receivers = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
 };
@@ -58,6 +60,7 @@ std::map<Cell, Sums> sums_by_cell(const Target& target, const std::vector<Vec3f>
     ++sums.receivers;
     sums.wanted += double(luminance(target.illumination[i]));
     sums.found += double(luminance(illumination[i]));
+    sums.excess += error;
     sums.moment += squared * to_eigen(position);
   }
   return cells;
@@ -88,19 +91,26 @@ void keep_clear_ones(const Target& target, std::map<Cell, Sums>& cells) {
 // Of each part of the receivers where it is too dark, and where it is too bright: all its cells that hold more than a
 // little of the error, and the middle of the worst.
 std::vector<NotReached> places_by_surface(const Receivers& receivers, const std::map<Cell, Sums>& cells, double total) {
-  std::map<std::array<long, 2>, std::pair<NotReached, double>> surfaces;  // with the squared error of the worst cell
+  struct Surface {
+    NotReached place;
+    double worst = 0;  // squared error of a cell
+    Vec3f excess;
+  };
+  std::map<std::array<long, 2>, Surface> surfaces;
   for (const auto& [cell, sums] : cells) {
     if (sums.squared < kLeastCell * total) continue;
-    auto& [place, worst] = surfaces[{cell[0], cell[1]}];
+    auto& [place, worst, excess] = surfaces[{cell[0], cell[1]}];
     const auto part = std::size_t(cell[0]);
     place.node = part < receivers.parts.size() ? receivers.parts[part].name : "";
     place.share += sums.squared / total;
     place.excess += sums.found - sums.wanted;
     place.wanted += sums.wanted;
+    excess += sums.excess;
+    place.other_color = std::abs(place.excess) < kHue * double(length(excess)) / std::sqrt(3);
     if (sums.squared > worst) worst = sums.squared, place.position = to_vec3f(sums.moment / sums.squared);
   }
   std::vector<NotReached> places;
-  for (const auto& [surface, place] : surfaces) places.push_back(place.first);
+  for (const auto& [key, surface] : surfaces) places.push_back(surface.place);
   return places;
 }
 

@@ -364,6 +364,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   if (options.method == SolveMethod::kJoint) {
     const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : result.relative_l2_cached;
     put_in_curve(set_of(lights, error), result.error_curve);
+    have_in_curve(set_of(lights, error), result.error_curve);  // a further solve may ask for as many
     if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;

@@ -59,6 +59,7 @@ struct NotReached {
   double share = 0;   // of the squared error of all receivers
   double excess = 0;  // Σ luminance found − wanted, cd/m², over its receivers: negative where it is too dark …
   double wanted = 0;  // … and Σ luminance wanted
+  bool other_color = false;  // the error is one of colour, hardly of luminance
 };
 
 struct StageReport {

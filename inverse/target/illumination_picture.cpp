@@ -6,30 +6,36 @@
 #include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/camera_rays.h"
+#include "renderer/trace/path_tracer.h"
 #include "renderer/trace/surface_point.h"
 
 namespace chiaro::inverse {
 namespace {
 
-constexpr int kGrid = 2;              // samples along a side of a pixel
+constexpr int kGrid = 2;              // samples along a side of a pixel …
+constexpr int kGridOfBlended = 4;     // … where half-transparent surfaces are seen by some of them alone
 constexpr float kMostlyKnown = 0.5F;  // of the weights of a triangle's corners, those that the target weighs, or more
 
 class IlluminationView {
  public:
   IlluminationView(const renderer::RayTracer& tracer, const Target& target, const PictureFrame& frame)
-      : tracer_(tracer), target_(target), lookup_(target.receivers), rays_(frame.camera, frame.width, frame.height) {}
+      : tracer_(tracer),
+        target_(target),
+        lookup_(target.receivers),
+        rays_(frame.camera, frame.width, frame.height),
+        grid_(renderer::has_blended_surfaces(tracer.scene()) ? kGridOfBlended : kGrid) {}
 
   void write_pixel(int x, int y, float* pixel) const {
-    for (int row = 0; row < kGrid; ++row) {
-      for (int column = 0; column < kGrid; ++column) {
-        const std::uint32_t sample = std::uint32_t(kGrid * row + column);
-        const auto value =
-            seen({float(x) + (float(column) + 0.5F) / kGrid, float(y) + (float(row) + 0.5F) / kGrid},
-                 renderer::hash_combine(renderer::hash_combine(std::uint32_t(x), std::uint32_t(y)), sample));
-        if (!value) continue;
-        for (int c = 0; c < 3; ++c) pixel[c] += (*value)[c] / (kGrid * kGrid);
-        pixel[3] += 1.0F / (kGrid * kGrid);
-      }
+    const auto part = 1 / float(grid_ * grid_);
+    for (int i = 0; i < grid_ * grid_; ++i) {
+      const renderer::Vec2f in_pixel{(float(i % grid_) + 0.5F) / float(grid_),
+                                     (float(i / grid_) + 0.5F) / float(grid_)};
+      const std::uint32_t of_pixel = renderer::hash_combine(std::uint32_t(x), std::uint32_t(y));
+      const auto value =
+          seen({float(x) + in_pixel.x, float(y) + in_pixel.y}, renderer::hash_combine(of_pixel, std::uint32_t(i)));
+      if (!value) continue;
+      for (int c = 0; c < 3; ++c) pixel[c] += part * (*value)[c];
+      pixel[3] += part;
     }
   }
 
@@ -62,6 +68,7 @@ class IlluminationView {
   const Target& target_;
   ReceiverLookup lookup_;
   renderer::CameraRays rays_;
+  int grid_;
 };
 
 }  // namespace

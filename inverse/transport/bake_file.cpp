@@ -238,6 +238,11 @@ void require_all(const std::vector<std::unique_ptr<TransportCacheReader>>& shard
 
 fs::path unfinished_bake(const fs::path& file) { return file.string() + ".unfinished"; }
 
+std::vector<fs::path> files_of_bake(const fs::path& file) {
+  const fs::path unfinished = unfinished_bake(file);
+  return {file, unfinished, unfinished.string() + kNew};
+}
+
 BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptions& options,
                          const renderer::Control& control) {
   const TransportCache& header = baker.header();
@@ -252,6 +257,8 @@ BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptio
   if (goes_on) {
     go_on(unfinished, header, range, start, control, bake);
   } else {
+    std::error_code ignored;
+    fs::remove(unfinished.string() + kNew, ignored);  // of one that was killed as it went on
     bake.writer = begin_anew(unfinished, header, range);
   }
   double write_seconds = 0;

@@ -20,6 +20,8 @@ struct BakeFileOptions {
 
 // Where a bake is until it is whole: beside the file.
 std::filesystem::path unfinished_bake(const std::filesystem::path& file);
+// All names that baking into a file may take.
+std::vector<std::filesystem::path> files_of_bake(const std::filesystem::path& file);
 
 // Writes the receivers of a shard, all lights, as they are baked, and puts the file in its place when it is whole. What
 // there is of an unfinished bake stays when it is interrupted or fails, and is gone on with if `resume`: the same bytes

@@ -121,7 +121,7 @@ LightConstraints read_back(const LightConstraints& constraints) {
 
 SolveResult solve_case(const Setting& setting, const SharedTarget& shared, const ConstraintCase& c) {
   const LightConstraints constraints = read_back(c.constraints);
-  cli::require_known_to(c.method, constraints);
+  cli::require_known_to(c.method, constraints, {{}, "constraints.json"});
   SolveProblem problem = problem_of(*setting.stage, shared);
   const renderer::Scene& scene = setting.stage->loaded.scene;
   if (constraints.keep_lights) problem.kept_lights = c.scene_lights;

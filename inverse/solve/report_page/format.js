@@ -19,7 +19,8 @@ const percent = (value) => (isNumber(value) ? significant(100 * value, 3) + " %"
 
 function duration(seconds) {
   if (seconds < 60) return significant(seconds, 2) + " s";
-  return Math.floor(seconds / 60) + " min " + Math.round(seconds % 60) + " s";
+  const whole = Math.round(seconds);
+  return Math.floor(whole / 60) + " min " + (whole % 60) + " s";
 }
 
 const words = (name) => name.replace(/_/g, " ");

@@ -222,6 +222,22 @@ TEST_F(ConstrainedSolve, LampsInOnePlaceAreNotToldApart) {
   how.verification_samples = 128;
   const SolveResult result = solve(in_place, how);
   EXPECT_EQ(result.not_told_apart, (std::vector<std::pair<int, int>>{{2, 3}}));
+  EXPECT_LT(max_component(result.lights[0].intensity_interval),
+            0.1F * max_component(std::get<renderer::PointLight>(result.lights[0].light).intensity));
+}
+
+// Direct light has no noise, which would make them look unlike each other.
+TEST_F(ConstrainedSolve, OfLampsInOnePlaceNoIntensityIsKnown) {
+  const Target target = corner_.target(known_lights(2), 0);
+  SolveProblem in_place = problem(target);
+  in_place.bake.bounces = 0;
+  in_place.lights_in_place = point_lights(known_lights(2));
+  in_place.lights_in_place.push_back(in_place.lights_in_place[1]);
+  const SolveResult result = solve(in_place, options());
+  EXPECT_TRUE(is_finite(result.lights[0].intensity_interval));
+  EXPECT_TRUE(std::isinf(max_component(result.lights[1].intensity_interval)));
+  EXPECT_TRUE(std::isinf(max_component(result.lights[2].intensity_interval)));
+  EXPECT_EQ(result.not_told_apart, (std::vector<std::pair<int, int>>{{2, 3}}));
 }
 
 // What the lights of the lightcut left before they kept to any rule says nothing of those that do.

@@ -88,6 +88,27 @@ TEST(LightIntervals, OfTwoLightsInOnePlaceNothingIsKnown) {
   EXPECT_EQ(intervals.confounded.size(), 1U);
 }
 
+TEST(LightIntervals, OfLightsInTwoPlacesEachPlacesSumIsKnown) {
+  LightEstimates lights = known_lights(2);
+  for (LightEstimate& light : lights) light.intensity /= 3;
+  lights.push_back(lights[0]);
+  lights.push_back(lights[1]);
+  lights.push_back(lights[1]);
+  const DirectProblem problem(lights);
+  using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+  EXPECT_EQ(light_intervals(problem.response(), with_noise(problem.observations(), 0.01, 1), lights).confounded,
+            (Pairs{{0, 2}, {1, 3}, {1, 4}, {3, 4}}));
+}
+
+TEST(LightIntervals, ASumIsKnownOnlyIfItIsKnownBetterThanEach) {
+  EXPECT_TRUE(only_their_sum_is_known(1, 1, -0.99, 0.5));
+  EXPECT_FALSE(only_their_sum_is_known(1, 1, -0.8, 0.5));
+  EXPECT_FALSE(only_their_sum_is_known(1, 1, -0.99, 5)) << "each is known well enough";
+  EXPECT_FALSE(only_their_sum_is_known(1, 100, -9.9, 0.5)) << "one of them is known better than the sum";
+  const double unknown = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(only_their_sum_is_known(unknown, unknown, 0, 0.5));
+}
+
 TEST(LightIntervals, LightsSideBySideAreNotToldApart) {
   LightEstimates lights = known_lights(2);
   const DirectProblem apart(lights);

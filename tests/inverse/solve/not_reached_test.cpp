@@ -70,6 +70,19 @@ TEST(NotReached, WhatWeighsNothingHidesNoPlace) {
   EXPECT_EQ(places_not_reached(target, illumination, 0.3).size(), places);
 }
 
+TEST(NotReached, SaysWhereTheColourAloneDiffers) {
+  const PaintedCorner corner;
+  Target target = corner.target(known_lights(1), 0);
+  std::vector<Vec3f> found = target.illumination;
+  for (Vec3f& value : found) value = luminance(value) * Vec3f{2, 0.75F, 0.55F};
+  for (Vec3f& value : target.illumination) value = luminance(value) * Vec3f{1, 1, 1};
+  const std::vector<NotReached> places = places_not_reached(target, found, 0);
+  ASSERT_FALSE(places.empty());
+  for (const NotReached& place : places) EXPECT_TRUE(place.other_color) << place.node;
+  for (Vec3f& value : found) value = 0.5F * luminance(value) * Vec3f{1, 1, 1};
+  for (const NotReached& place : places_not_reached(target, found, 0)) EXPECT_FALSE(place.other_color) << place.node;
+}
+
 TEST(NotReached, NoiseIsNoPlace) {
   const PaintedCorner corner;
   const Target target = corner.target(known_lights(2), 0);
