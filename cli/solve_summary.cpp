@@ -143,10 +143,10 @@ JsonObject solve_summary(const inverse::SolveResult& result) {
 
 std::vector<std::vector<int>> groups_not_told_apart(const inverse::SolveResult& result) {
   std::vector<std::set<int>> groups;
-  for (const auto& [one, other] : result.not_told_apart) {
-    std::set<int> linked{one, other};
+  for (const std::pair<int, int>& pair : result.not_told_apart) {
+    std::set<int> linked{pair.first, pair.second};
     std::erase_if(groups, [&](std::set<int>& group) {
-      const bool shared = group.contains(one) || group.contains(other);
+      const bool shared = group.contains(pair.first) || group.contains(pair.second);
       if (shared) linked.merge(group);
       return shared;
     });

@@ -224,6 +224,10 @@ class TargetLoading {
 
   inverse::Target from_values(const inverse::Receivers& receivers) const {
     inverse::TargetFromValues result = inverse::target_from_values(receivers, values_, session_.control());
+    if (result.not_placed > 0) {
+      session_.warn(fmt::format("{} of {} painted values lie on surfaces without receivers, and are left out",
+                                result.not_placed, values_.size()));
+    }
     const auto& weight = result.target.weight;
     for (std::size_t i = 0; i < weight.size(); ++i) {
       if (weight[i] > 0 && max_component(result.target.illumination[i]) > 0) return std::move(result.target);

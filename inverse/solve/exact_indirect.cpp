@@ -31,7 +31,7 @@ renderer::PointLight unity_light(const Eigen::Vector3d& position) {
 }
 
 int paths_of_each(std::size_t paths, std::size_t receivers) {
-  return std::clamp(int(paths / receivers), kLeastPaths, kMostPaths);
+  return int(std::clamp(paths / receivers, std::size_t(kLeastPaths), std::size_t(kMostPaths)));
 }
 
 // What some receivers get of a unity light by bounces alone.
@@ -68,7 +68,7 @@ void ExactIndirect::correct(const LightResponse& response, LightEstimates& light
 
 void ExactIndirect::correct_by_paths(const LightResponse& response, const Observations& observations,
                                      LightEstimates& lights) const {
-  const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples) / lights.size();
+  const std::size_t paths = kPathsPerSample * std::size_t(settings_.samples) / std::max<std::size_t>(1, lights.size());
   const int most = paths_of_each(paths, response.receiver_count());
   for (LightEstimate& light : lights) {
     const Column traced = column_of(traced_so_well(response, observations, light, most).value);

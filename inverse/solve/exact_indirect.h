@@ -23,7 +23,6 @@ class ExactIndirect {
 
   const renderer::RayTracer& tracer() const { return tracer_; }
   const GatherOperator& gather() const { return gather_; }
-  const BakeSettings& settings() const { return settings_; }
 
  private:
   renderer::Illumination traced_so_well(const LightResponse& response, const Observations& observations,

@@ -88,9 +88,8 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   nothing_lit(problem);
 }
 
-// Brightest contribution first. One that the last descent left dark, or as good as, is none, unless so many were asked
-// for.
-// Those that are reported, in the order of the trace.
+// Into the result, brightest contribution first. One that the last descent left dark, or as good as, is none, unless so
+// many were asked for. Returns those that are reported, in the order of the trace.
 LightEstimates report_lights(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
                              const LightsByTrace& by_trace, SolveResult& result) {
   const LightResponse& response = searched.response;
@@ -251,14 +250,14 @@ SearchBasis make_basis(const SolveProblem& problem, const SolveOptions& options,
   return {options, control, std::move(importance), std::move(samples), std::move(published), region_may_grow(problem)};
 }
 
-// Null: `fallback` is what there is, as the grid of a larger region has too many lights.
+// Null: `fallback` is what there is, as the grid of another region has too many lights, or none.
 std::unique_ptr<RegionSearch> search_region(const std::shared_ptr<const SearchBasis>& basis,
                                             const SolveProblem& problem, const std::optional<Box3f>& region,
                                             const RegionSearch* fallback, const RegionSearch* before,
                                             StageClock& clock) {
   try {
     return std::make_unique<RegionSearch>(basis, problem, region, before, clock);
-  } catch (const renderer::Error&) {
+  } catch (const NoUsableGrid&) {
     if (fallback == nullptr) throw;
     return nullptr;
   }
@@ -307,7 +306,7 @@ std::unique_ptr<RegionSearch> search(const SolveProblem& problem, const SolveOpt
   std::unique_ptr<RegionSearch> found;
   try {
     found = search(basis, problem, first, nullptr, clock, result);
-  } catch (const renderer::Error&) {
+  } catch (const NoUsableGrid&) {
     if (!first) throw;
     first.reset();  // lights may stand nowhere around what is lit
     found = search(basis, problem, first, nullptr, clock, result);

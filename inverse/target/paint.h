@@ -40,7 +40,7 @@ struct Strokes {
   std::vector<Stroke> strokes;
 };
 
-// JSON as in docs; Error naming the stroke and the field.
+// JSON as in docs/strokes.md; Error naming the stroke and the field.
 Strokes load_strokes(const std::filesystem::path& path);
 
 struct PaintOptions {

@@ -93,11 +93,11 @@ std::string so_far_from_surfaces(const PlaceRules& rules) {
   return rules.surface_distance > 0 ? fmt::format(" {} m from all surfaces", rules.surface_distance) : "";
 }
 
-renderer::Error no_place(const renderer::Scene& scene, const PlaceRules& rules) {
-  return renderer::Error({scene.path, "solve",
-                          fmt::format("no light possible: nowhere {} is a place{}", where_lights_may_stand(rules),
-                                      so_far_from_surfaces(rules)),
-                          "a smaller distance to surfaces, or a larger region"});
+NoUsableGrid no_place(const renderer::Scene& scene, const PlaceRules& rules) {
+  return NoUsableGrid({scene.path, "solve",
+                       fmt::format("no light possible: nowhere {} is a place{}", where_lights_may_stand(rules),
+                                   so_far_from_surfaces(rules)),
+                       "a smaller distance to surfaces, or a larger region"});
 }
 
 LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules) {
@@ -134,8 +134,8 @@ AllowedPlaces::AllowedPlaces(const renderer::Scene& scene, const Box3f& region, 
   if (anywhere) boxes_.push_back(region);
   if (boxes_.empty() && mounts_.empty()) {
     if (!rules.mounts.empty()) too_near(rules.mounts.front(), scene, rules.surface_distance);
-    throw renderer::Error({scene.path, "region", "no light possible: lies outside the grid of lights",
-                           "a region that the transport was baked for"});
+    throw NoUsableGrid({scene.path, "region", "no light possible: lies outside the grid of lights",
+                        "a region that the transport was baked for"});
   }
   if (rules.surface_distance > 0) surfaces_ = std::make_shared<NearestSurface>(scene);
 }

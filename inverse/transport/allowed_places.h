@@ -36,7 +36,7 @@ struct PlaceRules {
 std::string where_lights_may_stand(const PlaceRules& rules);
 std::string so_far_from_surfaces(const PlaceRules& rules);
 // What a solve ends with where no light of its grid is near an allowed place.
-renderer::Error no_place(const renderer::Scene& scene, const PlaceRules& rules);
+NoUsableGrid no_place(const renderer::Scene& scene, const PlaceRules& rules);
 
 // A grid of lights where the rules allow any, and no farther than a cell from there: over the boxes, and where lights
 // hang on surfaces over the whole scene. Error for a node that is not there.

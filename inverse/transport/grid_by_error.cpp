@@ -173,9 +173,9 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
     const double step = std::clamp(std::pow(options.error / error, 1 / kPower), kLeastStep, kMostStep);
     lights /= step * step * step;
   }
-  throw renderer::Error({tracer.scene().path, "option --grid",
-                         fmt::format("{:.3g} % takes more than {} lights", 100 * options.error, kMostGridLights),
-                         fmt::format("{:.1f} % or more, or a smaller --region", 100 * least)});
+  throw NoUsableGrid({tracer.scene().path, "option --grid",
+                      fmt::format("{:.3g} % takes more than {} lights", 100 * options.error, kMostGridLights),
+                      fmt::format("{:.1f} % or more, or a smaller --region", 100 * least)});
 }
 
 std::vector<GridCell> whole_cells(const LightGrid& grid) {

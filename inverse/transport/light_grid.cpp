@@ -240,9 +240,9 @@ LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOpti
     grid = filled_grid(region, counts, options.parts, free_space);
   }
   if (grid.positions.empty()) {
-    throw Error({tracer.scene().path, "light grid",
-                 "no light possible: every position lies inside a solid, or on a surface",
-                 "a region with free space, by --region"});
+    throw NoUsableGrid({tracer.scene().path, "light grid",
+                        "no light possible: every position lies inside a solid, or on a surface",
+                        "a region with free space, by --region"});
   }
   return grid;
 }

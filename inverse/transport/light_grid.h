@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/ray_tracer.h"
 
@@ -51,6 +52,12 @@ void set_finer_cells(LightGrid& grid, std::vector<LightGrid::FinerCell> cells);
 
 // The scene's bounds, a little inside, but on both sides of what is flat.
 Box3f default_region(const renderer::RayTracer& tracer);
+
+// Lights may stand nowhere in a region, or nowhere that a grid of as many as there may be does justice to.
+class NoUsableGrid : public renderer::Error {
+ public:
+  using Error::Error;
+};
 
 struct LightGridOptions {
   // 0, 0, 0: from the region's shape, for about so many nodes as `lights` says; more where none of them is free.

@@ -43,8 +43,7 @@ class Media {
 };
 
 // Of the light that comes along `ray`, which nothing but surfaces that its `clear` passes stand in the way of: that
-// part which they, and the solids among them, let through. `media`: where the ray starts. distance: to its end, metres;
-// infinite where the ray is.
+// part which they, and the solids among them, let through. `media`: where the ray starts.
 Vec3f clear_transmittance(const RayTracer& tracer, const Ray& ray, const Media& media);
 
 bool has_clear_surfaces(const Scene& scene);

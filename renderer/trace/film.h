@@ -21,7 +21,7 @@ namespace chiaro::renderer {
 struct PixelSample {
   bool hit = false;
   Vec3f beauty, albedo, normal, position, illumination;
-  float depth = 0;                         // metres along the ray
+  float depth = 0;                         // metres along the camera's axis
   std::uint32_t object = 0, material = 0;  // Cryptomatte's, where something is hit
   PathLight light;
 };

@@ -78,7 +78,6 @@ class PathTracer {
   // Whether direct light comes from more than punctual lights, so that scattered rays find it too.
   bool has_emission() const { return !emitters_.empty() || !environments_.empty(); }
   std::size_t emission_source() const { return lights_.size(); }
-  const RayTracer& tracer() const { return tracer_; }
 
  private:
   struct Vertex;

@@ -1,6 +1,7 @@
 #include "renderer/trace/ray_tracer.h"
 
 #include <algorithm>
+#include <array>
 
 #include <embree3/rtcore.h>
 
@@ -22,14 +23,16 @@ class MeanPassage {
   };
 
   void cross(Surface surface, float through) {
-    if (through >= 1 || std::find(crossed_.begin(), crossed_.end(), surface) != crossed_.end()) return;
-    crossed_.push_back(surface);
+    const auto end = crossed_.begin() + std::ptrdiff_t(count_);
+    if (through >= 1 || std::find(crossed_.begin(), end, surface) != end) return;
+    if (count_ < crossed_.size()) crossed_[count_++] = surface;
     part_ *= through;
   }
   float part() const { return part_; }
 
  private:
-  std::vector<Surface> crossed_;
+  std::array<Surface, 64> crossed_;  // of more the same one may count twice; nothing may throw within Embree
+  std::size_t count_ = 0;
   float part_ = 1;
 };
 
@@ -184,8 +187,7 @@ struct RayTracer::Embree {
   std::vector<RTCScene> mesh_scenes;
   std::vector<GeometryUser> users;                  // per mesh; stable addresses
   std::vector<std::uint32_t> instance_of_geometry;  // by root geometry id
-  std::vector<Mat4f> world_from_object;             // by instance, identity for flattened ones
-  std::vector<bool> flattened;                      // by instance
+  std::vector<Mat4f> world_from_object;             // by instance
 
   ~Embree() {
     for (RTCScene scene : mesh_scenes) {
@@ -259,7 +261,6 @@ struct RayTracer::Embree {
     attach(root, geometry);
     instance_of_geometry.push_back(index);
     world_from_object.push_back(instance.world_from_object);
-    flattened.push_back(flatten);
   }
 };
 

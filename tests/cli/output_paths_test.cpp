@@ -1,7 +1,10 @@
 #include "cli/output_paths.h"
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
+#include "cli/session.h"
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
 #include "tests/support/temporary_folder.h"
@@ -76,6 +79,25 @@ TEST_F(CliOutputPaths, OutputsNeverTakeThePlaceOfInputsOrOfEachOther) {
   EXPECT_THROW(require_apart({}, {folder_ / "c.glb", folder_ / "b/../c.glb"}), renderer::Error);
   EXPECT_NO_THROW(require_apart({folder_ / "a.glb", ""}, {folder_ / "b/a.glb", folder_ / "a.json", ""}));
   EXPECT_NO_THROW(require_apart({folder_ / "a.glb"}, {folder_ / "link.glb"}));  // the link itself is replaced
+}
+
+// In a folder such as /tmp each replaces only what is their own.
+TEST_F(CliOutputPaths, WhatCannotBeReplacedIsAnError) {
+  if (::geteuid() != 0) GTEST_SKIP() << "no files of other users can be made";
+  constexpr uid_t kOwner = 1, kOther = 2, kUser = 65534;
+  folder_.write("theirs.exr", "x");
+  folder_.write("own.exr", "x");
+  fs::permissions(folder_.path(), fs::perms::all | fs::perms::sticky_bit);
+  ASSERT_EQ(::chown(folder_.path().c_str(), kOwner, kOwner), 0);
+  ASSERT_EQ(::chown((folder_ / "theirs.exr").c_str(), kOther, kOther), 0);
+  ASSERT_EQ(::chown((folder_ / "own.exr").c_str(), kUser, kUser), 0);
+  ASSERT_EQ(::seteuid(kUser), 0);
+  EXPECT_THROW(require_writable(folder_ / "theirs.exr"), renderer::Error);
+  EXPECT_NO_THROW(require_writable(folder_ / "own.exr"));
+  EXPECT_NO_THROW(require_writable(folder_ / "new.exr"));
+  Session session(CommonOptions{.threads = 0, .seed = 0, .json = false, .quiet = true});
+  EXPECT_THROW(session.require_outputs_in(folder_.path(), {"new.exr", "theirs.exr"}), renderer::Error);
+  ASSERT_EQ(::seteuid(0), 0);
 }
 
 TEST_F(CliOutputPaths, InputsAreWhatLinksLeadTo) {

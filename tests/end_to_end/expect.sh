@@ -18,6 +18,7 @@ expect_exit() {
 expect_error() {
   local output=$1 text=$2
   shift 2
+  [ -n "$text" ] || fail "any text would do: $*"
   expect_exit 1 "$@"
   [ "$(wc -l <stderr.txt)" -eq 1 ] || fail "not one line: $*: $(cat stderr.txt)"
   grep -q '^chiaro: error: ' stderr.txt || fail "no 'chiaro: error:': $*: $(cat stderr.txt)"

@@ -316,12 +316,17 @@ TEST(Solve, SameLightsForAnyNumberOfThreads) {
   SolveOptions options = quick();
   options.important_vertices = 150;
   options.max_lights = 2;
-  std::vector<std::vector<Vector3d>> positions;
+  std::vector<SolveResult> results;
   for (const int threads : {1, 2}) {
     const renderer::ThreadLimit limit(threads);
-    positions.push_back(positions_of(solve(problem, options)));
+    results.push_back(solve(problem, options));
   }
-  EXPECT_EQ(positions[0], positions[1]);
+  EXPECT_EQ(positions_of(results[0]), positions_of(results[1]));
+  EXPECT_EQ(results[0].relative_l2, results[1].relative_l2);
+  for (std::size_t j = 0; j < results[0].lights.size(); ++j) {
+    EXPECT_EQ(std::get<renderer::PointLight>(results[0].lights[j].light).intensity,
+              std::get<renderer::PointLight>(results[1].lights[j].light).intensity);
+  }
 }
 
 TEST(Solve, KeptLightsStayAndAreNotFoundAgain) {
@@ -619,6 +624,13 @@ TEST(Solve, ACacheFileGivesWhatABakeGives) {
   const SolveResult result = solve(problem, quick());
   ASSERT_EQ(result.lights.size(), 1U);
   EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * corner.diagonal());
+  problem.cache_file.reset();
+  const SolveResult baked = solve(problem, quick());
+  ASSERT_EQ(baked.lights.size(), 1U);
+  const auto &one = std::get<renderer::PointLight>(result.lights[0].light),
+             &other = std::get<renderer::PointLight>(baked.lights[0].light);
+  EXPECT_LT(length(one.position - other.position), 1e-3 * corner.diagonal());
+  EXPECT_LT(length(one.intensity - other.intensity), 1e-3F * length(other.intensity));
 }
 
 // A cache of the whole scene ends where nobody wanted lights to end; one of a region of its own where that ends.

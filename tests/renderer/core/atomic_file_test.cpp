@@ -104,9 +104,10 @@ TEST_F(AtomicFile, IsWrittenUnderANameOfItsOwn) {
 
 TEST_F(AtomicFile, HasThePermissionsOfWhatItReplaces) {
   write_file_atomically(file(), "old");
-  fs::permissions(file(), fs::perms::owner_read | fs::perms::owner_write);
+  const fs::perms odd = fs::perms::owner_read | fs::perms::owner_write | fs::perms::others_read;
+  fs::permissions(file(), odd);
   write_file_atomically(file(), "new");
-  EXPECT_EQ(fs::status(file()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(fs::status(file()).permissions(), odd);
 }
 
 TEST_F(AtomicFile, WhatCannotTakeItsPlaceIsKeptAndNamed) {

@@ -29,6 +29,15 @@ TEST(FileLock, GoesWithTheFileWhateverItsName) {
   EXPECT_THROW(FileLock(folder / "b"), Error);
 }
 
+TEST(FileLock, OneWorksInAFolderAtATime) {
+  const test::TemporaryFolder folder;
+  std::optional<FileLock> first(FileLock::of_folder(folder.path()));
+  EXPECT_THROW(FileLock::of_folder(folder.path()), Error);
+  const FileLock of_a_file_in_it(folder / "a");
+  first.reset();
+  EXPECT_NO_THROW(FileLock::of_folder(folder.path()));
+}
+
 TEST(FileLock, WhatCannotBeMadeIsAnError) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(FileLock(folder / "missing/a"), Error);

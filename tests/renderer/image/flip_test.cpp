@@ -1,5 +1,6 @@
 #include "renderer/image/flip.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>

@@ -88,7 +88,7 @@ TEST(Bsdf, HemisphericalAlbedoIsTheMeanOfSampledWeights) {
       const Vec2f u = sampler.next_2d();
       if (const auto s = bsdf.sample(viewer, u, sampler.next_1d())) mean += double(s->weight.x) / kCount;
     }
-    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.03);
+    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.005);
   }
 }
 

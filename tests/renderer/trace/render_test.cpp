@@ -409,7 +409,29 @@ TEST(Render, SamplesThatAreNotFiniteAreDroppedAndCounted) {
   options.layers = frame_layers();
   const Frame frame = render(tracer, camera_above(2), lights, options);
   EXPECT_GT(frame.dropped_samples, 0U);
-  for (const float value : frame.image.pixels) EXPECT_FALSE(std::isnan(value));
+  const int depth = frame.image.find_channel("depth.Z");
+  const int channels = frame.image.channel_count();
+  for (std::size_t i = 0; i < frame.image.pixels.size(); ++i) {
+    if (int(i) % channels != depth) {
+      EXPECT_TRUE(std::isfinite(frame.image.pixels[i])) << frame.image.channel_names[i % std::size_t(channels)];
+    }
+  }
+}
+
+TEST(Render, AFrameThatThereIsNoTimeForHasItsFirstSamples) {
+  const Scene scene = test::corner_with_ball();
+  const RayTracer tracer(scene);
+  RenderOptions options = sized(16, 16, {.samples = 64});
+  options.layers = {"samples"};
+  options.time_limit = 1e-9;
+  const Frame frame = render(tracer, default_camera(scene), two_lights(), options);
+  EXPECT_FALSE(frame.interrupted);
+  const int samples = frame.image.find_channel("samples.Y");
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) EXPECT_EQ(frame.image.at(x, y)[samples], 4);
+  }
+  options.time_limit = 1e9;
+  EXPECT_EQ(render(tracer, default_camera(scene), two_lights(), options).samples, 64);
 }
 
 TEST(Render, NoiseIsToldAndLayersAreNumbersHoweverBrightOrDim) {
