@@ -35,7 +35,7 @@ std::filesystem::path preview_of(const RenderCommand& options) {
 
 // Unlit surfaces are seen without light.
 void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, Session& session) {
-  if (!lights.empty() || has_emission(*stage.scene)) return;
+  if (!lights.empty() || renderer::has_emission(*stage.scene)) return;
   const auto draws = [&](bool unlit) {
     return renderer::any_drawn_material(*stage.scene, [&](const auto& material) { return material.unlit == unlit; });
   };

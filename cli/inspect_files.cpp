@@ -25,6 +25,13 @@ const char* name_of_mode(inverse::BrushMode mode) {
   return "erase";
 }
 
+// Factors of what is there already have no unit, and what is erased has no colour.
+std::string text_of_color(const inverse::Stroke& stroke) {
+  if (stroke.mode == inverse::BrushMode::kErase) return "";
+  const char* unit = stroke.mode == inverse::BrushMode::kMultiply ? "" : " cd/m²";
+  return fmt::format(", {}{}", text_of_vector(stroke.color), unit);
+}
+
 }  // namespace
 
 void Inspection::add(const std::string& key, Json value, const std::string& label, const std::string& text) {
@@ -48,13 +55,6 @@ Inspection inspect_light_file(const std::string& file) {
   Inspection inspection = start_inspection("light file", file);
   add_lights(inspection, renderer::load_lights(file, inspection.warnings));
   return inspection;
-}
-
-// Factors of what is there already have no unit, and what is erased has no colour.
-std::string text_of_color(const inverse::Stroke& stroke) {
-  if (stroke.mode == inverse::BrushMode::kErase) return "";
-  const char* unit = stroke.mode == inverse::BrushMode::kMultiply ? "" : " cd/m²";
-  return fmt::format(", {}{}", text_of_vector(stroke.color), unit);
 }
 
 Inspection inspect_strokes(const std::string& file) {

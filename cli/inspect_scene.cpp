@@ -130,7 +130,7 @@ Inspection inspect_scene(const std::string& file, const renderer::LoadOptions& l
   const std::string fingerprint = renderer::fingerprint(loaded.scene);
   inspection.add("fingerprint", fingerprint, "fingerprint", fingerprint);
   if (loaded.scene.cameras.empty()) inspection.warnings.push_back(file + ": has no camera");
-  if (loaded.lights.empty() && !has_emission(loaded.scene)) {
+  if (loaded.lights.empty() && !renderer::has_emission(loaded.scene)) {
     inspection.warnings.push_back(file + ": has no lights, and nothing in it emits");
   }
   return inspection;

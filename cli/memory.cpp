@@ -24,6 +24,18 @@ double limit_in(const std::filesystem::path& file) {
   return std::ifstream(file) >> limit ? limit : std::numeric_limits<double>::infinity();
 }
 
+// As `ulimit -v` and batch systems set them.
+double process_limit() {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
+    rlimit limit = {};
+    if (::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+      least = std::min(least, double(limit.rlim_cur));
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 double control_group_limit(const std::filesystem::path& list, const std::filesystem::path& groups) {
@@ -39,18 +51,6 @@ double control_group_limit(const std::filesystem::path& list, const std::filesys
     std::filesystem::path group = std::filesystem::path(line.substr(second + 1)).relative_path();
     for (; !group.empty(); group = group.parent_path()) least = std::min(least, limit_in(mounted / group / file));
     least = std::min(least, limit_in(mounted / file));
-  }
-  return least;
-}
-
-// As `ulimit -v` and batch systems set them.
-double process_limit() {
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
-    rlimit limit = {};
-    if (::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-      least = std::min(least, double(limit.rlim_cur));
-    }
   }
   return least;
 }

@@ -104,13 +104,8 @@ renderer::Lights environment_of(const LoadedStage& stage, const EnvironmentOptio
   return lights;
 }
 
-bool has_emission(const renderer::Scene& scene) {
-  return renderer::any_drawn_material(
-      scene, [](const renderer::Material& material) { return renderer::max_component(material.emission) > 0; });
-}
-
 void require_light(const LoadedStage& stage, const renderer::Lights& lights, const std::string& expected) {
-  if (!lights.empty() || has_emission(*stage.scene)) return;
+  if (!lights.empty() || renderer::has_emission(*stage.scene)) return;
   throw renderer::Error({stage.scene->path, "", "no light: the scene has no lights and nothing in it emits", expected});
 }
 

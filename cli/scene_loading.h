@@ -47,9 +47,6 @@ renderer::Lights choose_lights(const LoadedStage& stage, const std::string& ligh
 // What shines whatever the light file says: the environment alone.
 renderer::Lights environment_of(const LoadedStage& stage, const EnvironmentOptions& options, Session& session);
 
-// Unlit surfaces have none.
-bool has_emission(const renderer::Scene& scene);
-
 // Error ("no light") where there are no lights and nothing emits.
 void require_light(const LoadedStage& stage, const renderer::Lights& lights, const std::string& expected);
 

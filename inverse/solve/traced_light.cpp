@@ -24,10 +24,7 @@ constexpr double kLittleNoise = 0.03;      // … and that is no more than this 
 constexpr double kNoiseBesideError = 0.3;  // … or of what the lights leave unexplained
 
 bool has_fixed_light(const SolveProblem& problem) {
-  const auto& materials = problem.tracer.scene().materials;
-  return !problem.kept_lights.empty() ||
-         std::any_of(materials.begin(), materials.end(),
-                     [](const renderer::Material& m) { return max_component(m.emission) > 0; });
+  return !problem.kept_lights.empty() || has_emission(problem.tracer.scene());
 }
 
 // One part of a trace.

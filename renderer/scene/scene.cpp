@@ -103,6 +103,10 @@ std::vector<int> instances_per_mesh(const Scene& scene) {
   return count;
 }
 
+bool has_emission(const Scene& scene) {
+  return any_drawn_material(scene, [](const Material& material) { return max_component(material.emission) > 0; });
+}
+
 std::size_t drawn_triangle_count(const Scene& scene) {
   std::size_t count = 0;
   for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();

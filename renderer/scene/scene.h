@@ -96,6 +96,7 @@ bool any_drawn_material(const Scene& scene, const Predicate& is) {
   });
 }
 
+bool has_emission(const Scene& scene);                 // unlit surfaces have none
 std::size_t drawn_triangle_count(const Scene& scene);  // instances counted each
 std::vector<int> instances_per_mesh(const Scene& scene);
 
