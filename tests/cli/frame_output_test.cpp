@@ -147,6 +147,8 @@ TEST(CliFrameSize, WhatIsMissingComesFromTheAspectRatio) {
 }
 
 TEST(CliFrameSize, FramesBeyondReasonAreRefused) {
+  EXPECT_EQ(frame_size({}, {.width = 16384, .height = 16384}), (std::array<int, 2>{16384, 16384}));
+  EXPECT_THROW(frame_size({}, {.width = 16385, .height = 16384}), UsageError);
   EXPECT_THROW(frame_size({}, {.width = 65536, .height = 65536}), UsageError);
   Camera thin;
   thin.aspect_ratio = 1e-6F;

@@ -19,7 +19,7 @@ import time
 from stress import Failure, run_tool
 
 BEFORE = b"what was here before\n"
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 STROKES = {"base": "black", "strokes": [{"mode": "add", "color": [1, 1, 1], "radius": 0.5, "path": [[0, 0, 0]]}]}
 
 

@@ -196,6 +196,7 @@ TEST(TexelCoverage, OfATriangulationTakesEveryTexelOnce) {
   }
   const std::array<int, 1> meshes{0};
   const TexelCoverage coverage = cover_texels(scene, meshes, {.width = 37, .height = 53});
+  ASSERT_EQ(coverage.texels.size(), 37U * 53U);
   for (const TexelCover& texel : coverage.texels) {
     EXPECT_EQ(texel.mesh, 0);
     EXPECT_FALSE(texel.overlapping);

@@ -139,7 +139,7 @@ TEST_F(TransportCacheFile, ReadsTheColumnsAskedFor) {
   const std::vector<std::size_t> chosen{0, 5, 6, 36};
   const TransportCache some = load_transport_cache(path(), chosen);
   ASSERT_EQ(some.receiver_count, 4U);
-  for (std::size_t light = 0; light < 10; ++light) {
+  for (std::size_t light = 0; light < all.grid.positions.size(); ++light) {
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_EQ(some.indirect[light * 4 + i], all.indirect[light * 37 + chosen[i]]);
       EXPECT_EQ(some.visibility[light * 4 + i], all.visibility[light * 37 + chosen[i]]);

@@ -115,6 +115,20 @@ TEST(CameraRays, AperturesAreUniform) {
   }
 }
 
+TEST(CameraRays, AperturesTurn) {
+  constexpr int kSide = 256;
+  for (const float rotation : {0.0F, 0.4F, 1.0F}) {
+    const Lens lens{.radius = 2, .focus_distance = 1, .blades = 3, .rotation = rotation};
+    Vec2f corner{0, 0};
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const Vec2f p = sample_aperture(lens, {(float(i % kSide) + 0.5F) / kSide, (float(i / kSide) + 0.5F) / kSide});
+      if (p.x * p.x + p.y * p.y > corner.x * corner.x + corner.y * corner.y) corner = p;
+    }
+    const float sides = 3 * (std::atan2(corner.y, corner.x) - rotation);  // whole turns
+    EXPECT_NEAR(std::cos(sides), 1, 0.02) << rotation;
+  }
+}
+
 TEST(CameraRays, ConesAreAPixelWide) {
   Camera camera;
   camera.vertical_fov = 1;
