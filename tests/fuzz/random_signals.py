@@ -3,10 +3,10 @@
 
     random_signals.py CHIARO SCENE.glb FOLDER [RUNS [SEED]]
 
-RUNS of each command with each of SIGINT, SIGTERM and SIGKILL (default 100). After each: outputs are as they were before
-or whole, an interrupted frame says that it is one, nothing that was being written aside is left but by SIGKILL, bakes go
-on to the bytes of a whole one, and the exit code and the line on standard error say what happened. Prints a table; exits
-with 1 at the first that is not so.
+RUNS of each command with each of SIGINT, SIGTERM, SIGHUP and SIGKILL (default 100). After each: outputs are as they were
+before or whole, an interrupted frame says that it is one, nothing that was being written aside is left but by SIGKILL,
+bakes go on to the bytes of a whole one, and the exit code and the line on standard error say what happened. Prints a
+table; exits with 1 at the first that is not so.
 """
 
 import json
