@@ -42,24 +42,6 @@ void try_to_make_file(const std::filesystem::path& folder, const std::filesystem
   ::unlink(probe.c_str());
 }
 
-// What is there may not be one's own to replace, or not be replaced at all.
-void require_replaceable(const std::filesystem::path& folder, const std::filesystem::path& wanted) {
-  struct statx there {};
-  constexpr unsigned kWanted = STATX_TYPE | STATX_MODE | STATX_UID;
-  if (::statx(AT_FDCWD, wanted.c_str(), AT_SYMLINK_NOFOLLOW, kWanted, &there) != 0) return;
-  const auto refuse = [&](const char* problem) {
-    throw Error({wanted.string(), "", fmt::format("cannot be replaced: {}", problem), "another name for the output"});
-  };
-  if (there.stx_attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND)) refuse("its attributes forbid it");
-  if (there.stx_attributes & STATX_ATTR_MOUNT_ROOT) refuse("something is mounted on it");
-  struct stat around {};
-  const uid_t user = ::geteuid();
-  const bool sticky = ::stat(folder.c_str(), &around) == 0 && (around.st_mode & S_ISVTX) != 0;
-  if (sticky && user != 0 && user != there.stx_uid && user != around.st_uid) {
-    refuse("it is another user's, in a folder where each replaces only what is their own");
-  }
-}
-
 // Of the shell: `> LIGHTS.json` beside `-o LIGHTS.glb` would lose one of the two.
 bool is_standard_output(const std::filesystem::path& path) {
   struct stat output {};
@@ -135,6 +117,23 @@ void require_file_name(const std::filesystem::path& path) {
   }
 }
 
+void require_replaceable(const std::filesystem::path& wanted) {
+  struct statx there {};
+  constexpr unsigned kWanted = STATX_TYPE | STATX_MODE | STATX_UID;
+  if (::statx(AT_FDCWD, wanted.c_str(), AT_SYMLINK_NOFOLLOW, kWanted, &there) != 0) return;
+  const auto refuse = [&](const char* problem) {
+    throw Error({wanted.string(), "", fmt::format("cannot be replaced: {}", problem), "another name for the output"});
+  };
+  if (there.stx_attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND)) refuse("its attributes forbid it");
+  if (there.stx_attributes & STATX_ATTR_MOUNT_ROOT) refuse("something is mounted on it");
+  struct stat around {};
+  const uid_t user = ::geteuid();
+  const bool sticky = ::stat(folder_of(wanted).c_str(), &around) == 0 && (around.st_mode & S_ISVTX) != 0;
+  if (sticky && user != 0 && user != there.stx_uid && user != around.st_uid) {
+    refuse("it is another user's, in a folder where each replaces only what is their own");
+  }
+}
+
 void require_writable(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::path folder = folder_of(path);
@@ -143,7 +142,7 @@ void require_writable(const std::filesystem::path& path) {
   }
   require_file_name(path);
   try_to_make_file(folder, path);
-  require_replaceable(folder, path);
+  require_replaceable(path);
 }
 
 void require_apart(const std::vector<std::filesystem::path>& inputs,

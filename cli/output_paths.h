@@ -12,6 +12,9 @@ void require_extension(const std::filesystem::path& path, const std::vector<std:
 // Error where a folder has the name, or standard output is that file.
 void require_file_name(const std::filesystem::path& path);
 
+// Error where what is there is not one's own to replace, or cannot be replaced at all.
+void require_replaceable(const std::filesystem::path& path);
+
 // Error where a file could not be made at `path`, or standard output is that file: asked before the long work starts.
 void require_writable(const std::filesystem::path& path);
 

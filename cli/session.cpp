@@ -42,13 +42,9 @@ void Session::require_outputs_in(const std::filesystem::path& folder, const std:
   require_not_a_file(folder);
   std::vector<std::filesystem::path> files;
   for (const std::string& name : names) files.push_back(folder / name);
-  std::error_code unknown;
   for (const std::filesystem::path& file : files) {
-    if (std::filesystem::is_directory(file.parent_path(), unknown)) {
-      require_writable(file);
-    } else {
-      require_file_name(file);  // its folder is made later
-    }
+    require_file_name(file);
+    require_replaceable(file);
   }
   require_apart(files);
 }

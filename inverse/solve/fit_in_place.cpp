@@ -94,10 +94,7 @@ ChannelErrors errors_of_channel(const Observations& observations, const TracedCo
   const Eigen::MatrixXd with_noise = (instruments.transpose() * instruments + columns.transpose() * columns) / 2;
   ChannelErrors errors;
   errors.directions = known_directions(with_noise, [&](double eigenvalue, const Eigen::VectorXd& direction) {
-    const Eigen::VectorXd scale =
-        with_noise.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
-    const Eigen::VectorXd at = scale.cwiseProduct(direction);
-    return at.dot(product * at) >= kLeastSure * eigenvalue;
+    return direction.dot(product * direction) >= kLeastSure * eigenvalue;
   });
   const Eigen::MatrixXd& basis = errors.directions.basis;
   const Eigen::MatrixXd inverse =
@@ -117,25 +114,6 @@ ChannelErrors errors_of_channel(const Observations& observations, const TracedCo
   return errors;
 }
 
-// Of one channel, of the lights that may shine in it.
-void find_confounded(const ChannelErrors& errors, const std::vector<Eigen::Array3d>& intensity, int channel,
-                     std::set<std::pair<std::size_t, std::size_t>>& pairs) {
-  std::vector<Eigen::Index> shining;
-  for (std::size_t j = 0; j < intensity.size(); ++j) {
-    if (may_shine(intensity[j], channel)) shining.push_back(Eigen::Index(j));
-  }
-  for (const auto& [j, k] : pairs_known_by_sum(errors.directions, shining)) pairs.emplace(shining[j], shining[k]);
-  for (const Eigen::Index a : shining) {
-    for (const Eigen::Index b : shining) {
-      if (a >= b) continue;
-      const double dimmer = std::min(intensity[std::size_t(a)][channel], intensity[std::size_t(b)][channel]);
-      if (only_their_sum_is_known(errors.covariance(a, a), errors.covariance(b, b), errors.covariance(a, b), dimmer)) {
-        pairs.emplace(a, b);
-      }
-    }
-  }
-}
-
 // Half widths of intensities; of positions, which stay, none. Infinite where a light brings nothing.
 LightIntervals intervals_of(const Observations& observations, const TracedColumns& traced,
                             const std::vector<Eigen::Array3d>& intensity) {
@@ -149,7 +127,7 @@ LightIntervals intervals_of(const Observations& observations, const TracedColumn
       const auto at = Eigen::Index(j);
       intervals.lights[j].intensity[c] = half_width(errors.freedom[at]) * std::sqrt(errors.covariance(at, at));
     }
-    find_confounded(errors, intensity, c, confounded);
+    find_confounded({errors.directions, errors.covariance, 0, 1}, intensity, c, confounded);
   }
   intervals.confounded.assign(confounded.begin(), confounded.end());
   return intervals;

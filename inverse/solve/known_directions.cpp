@@ -62,7 +62,7 @@ KnownDirections known_directions(const Eigen::MatrixXd& normal,
   std::vector<Eigen::Index> known;
   for (Eigen::Index e = 0; e < normal.rows(); ++e) {
     const double value = eigen.eigenvalues()[e];
-    if (value > kRounding && tells(value, eigen.eigenvectors().col(e))) known.push_back(e);
+    if (value > kRounding && tells(value, result.scale.cwiseProduct(eigen.eigenvectors().col(e)))) known.push_back(e);
   }
   const Eigen::MatrixXd directions = eigen.eigenvectors()(Eigen::all, known);
   result.basis = result.scale.asDiagonal() * directions;

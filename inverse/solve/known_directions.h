@@ -18,7 +18,7 @@ struct KnownDirections {
 };
 
 // By the directions of a symmetric normal matrix, its eigenvectors when it is scaled so. tells: whether an eigenvalue,
-// above rounding, and its direction tell something.
+// above rounding, and its direction, in the parameters' units, tell something.
 KnownDirections known_directions(
     const Eigen::MatrixXd& normal, const std::function<bool(double, const Eigen::VectorXd&)>& tells =
                                        [](double, const Eigen::VectorXd&) { return true; });

@@ -3,11 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include <Eigen/Eigenvalues>
 
-#include "inverse/solve/known_directions.h"
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
@@ -87,28 +85,6 @@ Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
   return pulls;
 }
 
-// Of one channel, of the lights that may shine in it.
-void find_confounded(const KnownDirections& directions, const Eigen::MatrixXd& covariance, const LightEstimates& lights,
-                     int channel, std::set<std::pair<std::size_t, std::size_t>>& pairs) {
-  std::vector<std::size_t> shining;
-  std::vector<Eigen::Index> parameters;
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    if (!may_shine(lights[l].intensity, channel)) continue;
-    shining.push_back(l);
-    parameters.push_back(Eigen::Index(kParameters * l + 3) + channel);
-  }
-  for (const auto& [j, k] : pairs_known_by_sum(directions, parameters)) pairs.emplace(shining[j], shining[k]);
-  for (std::size_t j = 0; j < shining.size(); ++j) {
-    for (std::size_t k = j + 1; k < shining.size(); ++k) {
-      const Eigen::Index a = parameters[j], b = parameters[k];
-      const double dimmer = std::min(lights[shining[j]].intensity[channel], lights[shining[k]].intensity[channel]);
-      if (only_their_sum_is_known(covariance(a, a), covariance(b, b), covariance(a, b), dimmer)) {
-        pairs.emplace(shining[j], shining[k]);
-      }
-    }
-  }
-}
-
 }  // namespace
 
 bool may_shine(const Eigen::Array3d& intensity, int channel) {
@@ -120,6 +96,27 @@ bool only_their_sum_is_known(double variance, double other_variance, double cova
   const double less = std::sqrt(std::min(variance, other_variance));
   const double of_sum = std::sqrt(std::max(0.0, variance + other_variance + 2 * covariance));
   return of_sum < kMoreSure * less && kNinety * less > dimmer;
+}
+
+void find_confounded(const IntensityErrors& errors, const std::vector<Eigen::Array3d>& intensity, int channel,
+                     std::set<std::pair<std::size_t, std::size_t>>& pairs) {
+  std::vector<std::size_t> shining;
+  std::vector<Eigen::Index> parameters;
+  for (std::size_t l = 0; l < intensity.size(); ++l) {
+    if (!may_shine(intensity[l], channel)) continue;
+    shining.push_back(l);
+    parameters.push_back(errors.first + errors.step * Eigen::Index(l));
+  }
+  for (const auto& [j, k] : pairs_known_by_sum(errors.directions, parameters)) pairs.emplace(shining[j], shining[k]);
+  for (std::size_t j = 0; j < shining.size(); ++j) {
+    for (std::size_t k = j + 1; k < shining.size(); ++k) {
+      const Eigen::Index a = parameters[j], b = parameters[k];
+      const double dimmer = std::min(intensity[shining[j]][channel], intensity[shining[k]][channel]);
+      if (only_their_sum_is_known(errors.covariance(a, a), errors.covariance(b, b), errors.covariance(a, b), dimmer)) {
+        pairs.emplace(shining[j], shining[k]);
+      }
+    }
+  }
 }
 
 LightIntervals unknown_intervals(std::size_t lights) {
@@ -145,8 +142,10 @@ LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& light
         kNinety * covariance.diagonal().segment<kParameters>(Eigen::Index(kParameters * l)).cwiseSqrt();
     intervals.lights.push_back({half.head<3>(), half.tail<3>()});
   }
+  std::vector<Eigen::Array3d> intensity;
+  for (const LightEstimate& light : lights) intensity.push_back(light.intensity);
   std::set<std::pair<std::size_t, std::size_t>> confounded;
-  for (int c = 0; c < 3; ++c) find_confounded(directions, covariance, lights, c, confounded);
+  for (int c = 0; c < 3; ++c) find_confounded({directions, covariance, 3 + c, kParameters}, intensity, c, confounded);
   intervals.confounded.assign(confounded.begin(), confounded.end());
   return intervals;
 }

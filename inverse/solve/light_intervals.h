@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <set>
 
+#include "inverse/solve/known_directions.h"
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -29,6 +31,16 @@ bool may_shine(const Eigen::Array3d& intensity, int channel);
 // Of two intensities of one channel: what one light has more the other has less, by as much as the dimmer one shines,
 // and their sum is known far better than each. Of none that is not known at all.
 bool only_their_sum_is_known(double variance, double other_variance, double covariance, double dimmer);
+
+// What a fit tells of the intensities of one channel: light l's is parameter first + step l.
+struct IntensityErrors {
+  const KnownDirections& directions;
+  const Eigen::MatrixXd& covariance;  // infinite variances of what is not known
+  Eigen::Index first, step;
+};
+// Adds the pairs of lights that may shine in the channel and of whose intensities only the sum is known.
+void find_confounded(const IntensityErrors& errors, const std::vector<Eigen::Array3d>& intensity, int channel,
+                     std::set<std::pair<std::size_t, std::size_t>>& pairs);
 
 // All infinite.
 LightIntervals unknown_intervals(std::size_t lights);

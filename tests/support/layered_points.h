@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/sampler.h"
+#include "renderer/trace/bsdf.h"
 #include "renderer/trace/surface_point.h"
 
 namespace chiaro::test {
@@ -24,6 +26,20 @@ inline renderer::SurfacePoint layered_point(renderer::Vec3f color, float metalli
   point.layers.emplace();
   point.layers->clearcoat_normal = {0, 0, 1};
   return point;
+}
+
+// What a point sends back of a cosine-weighted sky, by so many sampled directions: red.
+inline double mean_reflected(const renderer::SurfacePoint& point, int count) {
+  const renderer::Bsdf bsdf(point);
+  double mean = 0;
+  for (int i = 0; i < count; ++i) {
+    renderer::Sampler sampler(3, 0, std::uint32_t(i));
+    const renderer::Vec3f viewer = renderer::sample_cosine_hemisphere(sampler.next_2d());
+    const renderer::Vec2f u = sampler.next_2d();
+    const auto s = bsdf.sample(viewer, u, sampler.next_1d());
+    if (s && s->direction.z > 0) mean += double(s->weight.x) / count;
+  }
+  return mean;
 }
 
 struct NamedPoint {

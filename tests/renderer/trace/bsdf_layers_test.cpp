@@ -15,6 +15,7 @@ namespace {
 
 using test::layered_point;
 using test::layered_points;
+using test::mean_reflected;
 using test::NamedPoint;
 using test::uniform_direction;
 
@@ -296,17 +297,7 @@ TEST(BsdfLayers, ThatChangeNothingLeaveMetallicRoughness) {
 TEST(BsdfLayers, HemisphericalAlbedoIsWhatIsReflected) {
   for (const auto& [name, point] : layered_points({0.6F, 0.6F, 0.6F})) {
     if (!point.front || point.layers->clearcoat_normal.z < 1) continue;
-    const Bsdf bsdf(point);
-    double mean = 0;
-    constexpr int kCount = 1 << 12;
-    for (int i = 0; i < kCount; ++i) {
-      Sampler sampler(3, 0, std::uint32_t(i));
-      const Vec3f viewer = sample_cosine_hemisphere(sampler.next_2d());
-      const Vec2f u = sampler.next_2d();
-      const auto s = bsdf.sample(viewer, u, sampler.next_1d());
-      if (s && s->direction.z > 0) mean += double(s->weight.x) / kCount;
-    }
-    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.02) << name;
+    EXPECT_NEAR(hemispherical_albedo(point).x, mean_reflected(point, 1 << 12), 0.02) << name;
   }
 }
 
@@ -316,16 +307,7 @@ TEST(BsdfLayers, HemisphericalAlbedoOfClearcoatsIsWhatIsReflected) {
       SurfacePoint point = layered_point({0.6F, 0.6F, 0.6F}, 0, roughness);
       point.layers->clearcoat = 1;
       point.layers->clearcoat_roughness = of_coat;
-      const Bsdf bsdf(point);
-      double mean = 0;
-      constexpr int kCount = 1 << 15;
-      for (int i = 0; i < kCount; ++i) {
-        Sampler sampler(3, 0, std::uint32_t(i));
-        const Vec3f viewer = sample_cosine_hemisphere(sampler.next_2d());
-        const Vec2f u = sampler.next_2d();
-        if (const auto s = bsdf.sample(viewer, u, sampler.next_1d())) mean += double(s->weight.x) / kCount;
-      }
-      EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.003) << roughness << ' ' << of_coat;
+      EXPECT_NEAR(hemispherical_albedo(point).x, mean_reflected(point, 1 << 15), 0.003) << roughness << ' ' << of_coat;
     }
   }
 }

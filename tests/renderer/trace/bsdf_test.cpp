@@ -3,18 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/sampler.h"
+#include "tests/support/layered_points.h"
 
 namespace chiaro::renderer {
 namespace {
 
-SurfacePoint flat_point(Vec3f color, float metallic, float roughness) {
-  SurfacePoint point;
-  point.geometric_normal = point.smooth_normal = point.shading_normal = {0, 0, 1};
-  point.base_color = color;
-  point.metallic = metallic;
-  point.roughness = roughness;
-  return point;
-}
+using test::flat_point;
+using test::mean_reflected;
 
 const float kMaterials[][2] = {{0, 1}, {0, 0.3F}, {0.5F, 0.5F}, {1, 0.2F}, {1, 1}};  // metallic, roughness
 const Vec3f kViewers[] = {{0, 0, 1}, normalize(Vec3f{1, 0, 1}), normalize(Vec3f{1, 0.3F, 0.2F})};
@@ -79,16 +74,7 @@ TEST(Bsdf, LambertIsItsBaseColour) {
 TEST(Bsdf, HemisphericalAlbedoIsTheMeanOfSampledWeights) {
   for (const auto& m : kMaterials) {
     const SurfacePoint point = flat_point({0.6F, 0.6F, 0.6F}, m[0], m[1]);
-    const Bsdf bsdf(point);
-    double mean = 0;
-    constexpr int kCount = 1 << 15;
-    for (int i = 0; i < kCount; ++i) {
-      Sampler sampler(3, 0, std::uint32_t(i));
-      const Vec3f viewer = sample_cosine_hemisphere(sampler.next_2d());
-      const Vec2f u = sampler.next_2d();
-      if (const auto s = bsdf.sample(viewer, u, sampler.next_1d())) mean += double(s->weight.x) / kCount;
-    }
-    EXPECT_NEAR(hemispherical_albedo(point).x, mean, 0.005);
+    EXPECT_NEAR(hemispherical_albedo(point).x, mean_reflected(point, 1 << 15), 0.005);
   }
 }
 
