@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/first_line.h"
 #include "renderer/image/decode_samples.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
@@ -38,7 +39,7 @@ std::string file_name_for(std::string_view encoded) {
 }
 
 std::string reason(const std::string& text) {
-  const std::string line = text.substr(0, text.find('\n'));
+  const std::string line = first_line(text);
   return line.empty() ? "the decoder gives no reason" : line;
 }
 

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include "renderer/core/error.h"
+#include "renderer/core/first_line.h"
 #include "renderer/io/gltf_container.h"
 #include "renderer/io/gltf_draco.h"
 #include "renderer/io/gltf_extensions.h"
@@ -24,7 +25,7 @@ std::shared_ptr<const tinygltf::Model> parse(const std::string& structure, const
   } catch (const std::exception& exception) {
     error = exception.what();
   }
-  if (!parsed) throw Error({path.string(), "JSON", error.substr(0, error.find('\n')), "a glTF 2.0 scene"});
+  if (!parsed) throw Error({path.string(), "JSON", first_line(error), "a glTF 2.0 scene"});
   return model;
 }
 
