@@ -25,7 +25,7 @@ std::string figures(const RunPage& page) {
 }
 
 std::string remarks(const inverse::SolveResult& result) {
-  std::string text = "Ended: " + result.termination + ".";
+  std::string text = fmt::format("Ended: {}.", inverse::words_for(result.termination));
   for (const std::vector<int>& group : groups_not_told_apart(result)) {
     text += fmt::format(" Of lights {} only the sum is known.", text_of_list(group));
   }

@@ -138,7 +138,7 @@ JsonObject solve_summary(const inverse::SolveResult& result) {
           {"not_told_apart", pairs},
           {"not_reached", places},
           {"advice", result.advice},
-          {"termination", result.termination}};
+          {"termination", inverse::words_for(result.termination)}};
 }
 
 std::vector<std::vector<int>> groups_not_told_apart(const inverse::SolveResult& result) {
@@ -176,7 +176,7 @@ std::string solve_text(const inverse::SolveResult& result) {
   }
   if (!result.not_reached.empty()) rows.emplace_back("not reached", text_of_places(result.not_reached));
   if (!result.advice.empty()) rows.emplace_back("advice", result.advice);
-  rows.emplace_back("ended", result.termination);
+  rows.emplace_back("ended", inverse::words_for(result.termination));
   for (const inverse::StageReport& stage : result.stages) rows.emplace_back(stage.name, text_of_seconds(stage.seconds));
   rows.emplace_back("total", text_of_seconds(result.total_seconds));
   return light_table(result.lights) + "\n" + aligned_rows(rows);

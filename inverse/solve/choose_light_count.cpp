@@ -148,7 +148,7 @@ class Search {
   void keep_as_it_is(LightEstimates lights) {
     const std::vector<Column> columns = evaluate_columns(response_, lights, Evaluation::kTracedVisibility);
     const double error = refit_intensities(observations_, columns, lights);
-    keep({std::move(lights), error, 0, {}});
+    keep({std::move(lights), error, 0});
   }
 
   void keep(JointRefinement refined) {

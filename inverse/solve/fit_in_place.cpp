@@ -14,6 +14,7 @@
 #include "inverse/solve/known_directions.h"
 #include "inverse/solve/light_intervals.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/sandwich_estimate.h"
 #include "inverse/solve/stage_clock.h"
 #include "inverse/solve/traced_light.h"
 #include "inverse/transport/eigen_vectors.h"
@@ -63,23 +64,12 @@ TracedColumns trace_columns(const SolveProblem& problem, const renderer::Lights&
 
 struct ChannelErrors {
   KnownDirections directions;
-  Eigen::MatrixXd covariance;  // lights × lights
-  Eigen::VectorXd freedom;     // degrees of freedom that each light's variance is known by
+  SandwichEstimate of;  // the lights
 };
 
-// Half of an interval that holds 90 %, by Student's distribution, in standard deviations. Source: Abramowitz, Stegun,
-// Handbook of Mathematical Functions, 1964, 26.7.5.
-double half_width(double freedom) {
-  const double z = kNinety, z3 = std::pow(z, 3), z5 = std::pow(z, 5), z7 = std::pow(z, 7);
-  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * std::pow(freedom, 2)) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * std::pow(freedom, 3));
-}
-
-// Of one channel's intensities, by what the fit leaves at each receiver (sandwich estimate), as light_intervals(). The
-// columns' noise, which makes lights look unlike each other that are not, is not that of the same columns traced again:
-// these are the instruments. In directions where next to nothing but noise is left nothing is known. The few receivers
-// beside a lamp may have nearly all to say of it; so many degrees of freedom does their noise leave: Satterthwaite, An
-// Approximate Distribution of Estimates of Variance Components, 1946.
+// Of one channel's intensities, as light_intervals(). The columns' noise, which makes lights look unlike each other
+// that are not, is not that of the same columns traced again: these are the instruments. In directions where next to
+// nothing but noise is left nothing is known.
 ChannelErrors errors_of_channel(const Observations& observations, const TracedColumns& traced, const Column& residual,
                                 int channel) {
   const auto weighted = [&](const std::vector<Column>& columns) {
@@ -92,11 +82,11 @@ ChannelErrors errors_of_channel(const Observations& observations, const TracedCo
   const Eigen::MatrixXd instruments = weighted(traced.again), columns = weighted(traced.columns);
   const Eigen::MatrixXd product = instruments.transpose() * columns;
   const Eigen::MatrixXd with_noise = (instruments.transpose() * instruments + columns.transpose() * columns) / 2;
-  ChannelErrors errors;
-  errors.directions = known_directions(with_noise, [&](double eigenvalue, const Eigen::VectorXd& direction) {
-    return direction.dot(product * direction) >= kLeastSure * eigenvalue;
-  });
-  const Eigen::MatrixXd& basis = errors.directions.basis;
+  const KnownDirections directions =
+      known_directions(with_noise, [&](double eigenvalue, const Eigen::VectorXd& direction) {
+        return direction.dot(product * direction) >= kLeastSure * eigenvalue;
+      });
+  const Eigen::MatrixXd& basis = directions.basis;
   const Eigen::MatrixXd inverse =
       basis * (basis.transpose() * product * basis).completeOrthogonalDecomposition().pseudoInverse() *
       basis.transpose();
@@ -104,14 +94,7 @@ ChannelErrors errors_of_channel(const Observations& observations, const TracedCo
   const Eigen::VectorXd leverage = (columns * inverse).cwiseProduct(instruments).rowwise().sum();
   const Eigen::VectorXd left = observations.sqrt_weight.cwiseProduct(residual.col(channel))
                                    .cwiseQuotient((1 - leverage.array()).max(kLeastOutside).matrix());
-  const Eigen::MatrixXd pull = left.asDiagonal() * instruments * inverse.transpose();
-  errors.covariance = pull.transpose() * pull;
-  const Eigen::ArrayXd fourth = pull.array().square().square().colwise().sum();
-  errors.freedom = (errors.covariance.diagonal().array().square() / fourth.max(1e-300)).max(1);
-  for (Eigen::Index j = 0; j < pull.cols(); ++j) {
-    if (!errors.directions.knows(j)) errors.covariance(j, j) = std::numeric_limits<double>::infinity();
-  }
-  return errors;
+  return {directions, sandwich_estimate(left.asDiagonal() * instruments * inverse.transpose(), directions)};
 }
 
 // Half widths of intensities; of positions, which stay, none. Infinite where a light brings nothing.
@@ -124,10 +107,9 @@ LightIntervals intervals_of(const Observations& observations, const TracedColumn
   for (int c = 0; c < 3; ++c) {
     const ChannelErrors errors = errors_of_channel(observations, traced, residual, c);
     for (std::size_t j = 0; j < intensity.size(); ++j) {
-      const auto at = Eigen::Index(j);
-      intervals.lights[j].intensity[c] = half_width(errors.freedom[at]) * std::sqrt(errors.covariance(at, at));
+      intervals.lights[j].intensity[c] = errors.of.half_width(Eigen::Index(j));
     }
-    find_confounded({errors.directions, errors.covariance, 0, 1}, intensity, c, confounded);
+    find_confounded({errors.directions, errors.of.covariance, 0, 1}, intensity, c, confounded);
   }
   intervals.confounded.assign(confounded.begin(), confounded.end());
   return intervals;
@@ -214,7 +196,7 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.target_noise = target_noise(problem.target);
   result.important_vertices = int(observations.wanted.rows());
   FreshTrace traced = trace_for_verification(problem, found_lights(result), options, control, clock);
-  result.termination = traced.cut_short || clock.out_of_time() ? kTimeLimit : "all lights stay where they are";
+  result.termination = traced.cut_short || clock.out_of_time() ? Termination::kTimeLimit : Termination::kAllStay;
   const int fresh_samples = traced.samples;
   judge(problem, options, std::move(traced), result);
   clock.finish("verification", {{"samples", double(fresh_samples)},

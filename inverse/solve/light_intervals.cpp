@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "inverse/solve/sandwich_estimate.h"
 #include "renderer/core/control.h"
 
 namespace chiaro::inverse {
@@ -70,17 +71,19 @@ Column left_out(const FitAtRest& fit, const Eigen::MatrixXd& inverse, Eigen::Ind
   return left;
 }
 
-// How far each receiver pulls at each parameter, with what it would leave if it were left out of the fit.
+// How far each receiver moves each parameter, with what it would leave if it were left out of the fit.
 Eigen::MatrixXd pulls_of(const FitAtRest& fit, const Eigen::MatrixXd& inverse) {
   constexpr Eigen::Index kBlock = 256;
-  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(fit.weight.size(), inverse.cols());
+  Eigen::MatrixXd pulls(fit.weight.size(), inverse.cols());
   renderer::parallel_for(std::size_t((pulls.rows() + kBlock - 1) / kBlock), [&](std::size_t block) {
     const Eigen::Index first = Eigen::Index(block) * kBlock, count = std::min(kBlock, pulls.rows() - first);
     const Column left = left_out(fit, inverse, first, count);
+    Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(count, inverse.cols());
     for (int c = 0; c < 3; ++c) {
-      const Eigen::VectorXd pull = fit.weight.segment(first, count).cwiseProduct(left.col(c));
-      pulls.middleRows(first, count) += pull.asDiagonal() * fit.instruments[std::size_t(c)].middleRows(first, count);
+      const Eigen::VectorXd weighted = fit.weight.segment(first, count).cwiseProduct(left.col(c));
+      pull += weighted.asDiagonal() * fit.instruments[std::size_t(c)].middleRows(first, count);
     }
+    pulls.middleRows(first, count) = pull * inverse.transpose();
   });
   return pulls;
 }
@@ -131,21 +134,20 @@ Derivatives derivatives_of(const std::vector<ColumnWithGradient>& columns, const
 
 LightIntervals light_intervals(const FitAtRest& fit, const LightEstimates& lights) {
   const KnownDirections directions = known_directions(product_of(fit.instruments, fit.instruments, fit.weight));
-  const Eigen::MatrixXd inverse = inverse_of(fit, directions.basis), pull = pulls_of(fit, inverse);
-  Eigen::MatrixXd covariance = inverse * (pull.transpose() * pull) * inverse.transpose();
-  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
-    if (!directions.knows(k)) covariance(k, k) = std::numeric_limits<double>::infinity();
-  }
+  const SandwichEstimate errors = sandwich_estimate(pulls_of(fit, inverse_of(fit, directions.basis)), directions);
   LightIntervals intervals;
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    const Eigen::VectorXd half =
-        kNinety * covariance.diagonal().segment<kParameters>(Eigen::Index(kParameters * l)).cwiseSqrt();
-    intervals.lights.push_back({half.head<3>(), half.tail<3>()});
+    LightInterval& interval = intervals.lights.emplace_back();
+    for (int a = 0; a < 3; ++a) {
+      interval.position[a] = errors.half_width(Eigen::Index(kParameters * l) + a);
+      interval.intensity[a] = errors.half_width(Eigen::Index(kParameters * l) + 3 + a);
+    }
   }
   std::vector<Eigen::Array3d> intensity;
   for (const LightEstimate& light : lights) intensity.push_back(light.intensity);
   std::set<std::pair<std::size_t, std::size_t>> confounded;
-  for (int c = 0; c < 3; ++c) find_confounded({directions, covariance, 3 + c, kParameters}, intensity, c, confounded);
+  for (int c = 0; c < 3; ++c)
+    find_confounded({directions, errors.covariance, 3 + c, kParameters}, intensity, c, confounded);
   intervals.confounded.assign(confounded.begin(), confounded.end());
   return intervals;
 }

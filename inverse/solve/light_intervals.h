@@ -23,8 +23,6 @@ struct LightIntervals {
 // Of more nothing is computed: time and memory grow with their third and second power.
 inline constexpr std::size_t kMostLightsWithIntervals = 100;
 
-inline constexpr double kNinety = 1.645;  // standard deviations to either side
-
 // Whether a light's colour has enough of a channel to say anything by; one that is dark may have any colour.
 bool may_shine(const Eigen::Array3d& intensity, int channel);
 
@@ -46,12 +44,11 @@ void find_confounded(const IntensityErrors& errors, const std::vector<Eigen::Arr
 LightIntervals unknown_intervals(std::size_t lights);
 
 // How sure the least-squares lights are, from derivatives at fixed visibility and from what the fit leaves, which holds
-// the noise of the target and the errors of transport alike; no noise need be known. Infinite
-// where receivers tell nothing of a parameter, and for too many lights.
-// Source: White, A heteroskedasticity-consistent covariance matrix estimator and a direct test for heteroskedasticity,
-// 1980; a receiver's channels count as one cluster. MacKinnon, White, Some heteroskedasticity-consistent covariance
-// matrix estimators with improved finite sample properties, 1985 (HC3); Bell, McCaffrey, Bias reduction in standard
-// errors for linear regression with multi-stage samples, 2002.
+// the noise of the target and the errors of transport alike; no noise need be known. Infinite where receivers tell
+// nothing of a parameter, and for too many lights.
+// Source: sandwich_estimate.h; a receiver's channels count as one cluster. MacKinnon, White, Some
+// heteroskedasticity-consistent covariance matrix estimators with improved finite sample properties, 1985 (HC3); Bell,
+// McCaffrey, Bias reduction in standard errors for linear regression with multi-stage samples, 2002.
 LightIntervals light_intervals(const LightResponse& response, const Observations& observations,
                                const LightEstimates& lights);
 

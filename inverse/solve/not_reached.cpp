@@ -183,13 +183,13 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
   if (!problem.lights_in_place.empty()) {
     return ruled ? kWithoutConstraints : "lights that may move would come closer";
   }
-  if (result.termination == kTimeLimit)
+  if (result.termination == Termination::kTimeLimit)
     return "more time may bring the lights closer: the time limit ended their search";
   const int most = most_lights(options);
   if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
     return fmt::format("more lights may come closer: {} {} allowed", most, most == 1 ? "was" : "were");
   }
-  if (result.termination == kEarlierRefined) return "a solve without --from looks for further lights";
+  if (result.termination == Termination::kEarlierRefined) return "a solve without --from looks for further lights";
   if (options.method == SolveMethod::kThesis) return "the joint method, or another threshold, may come closer";
   if (any_at_limit(problem, result)) return kWithoutConstraints;
   if (any_at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";

@@ -309,13 +309,13 @@ Optimum conclude(const JointSearch& search, const JointLights& found, StageClock
   std::size_t held = found.beside_surfaces.size();
   LightEstimates lights =
       options.exact_lights > 0 ? exactly : without_negligible(search.response, search.judged, all, held);
-  const char* const termination = found.out_of_time                                                ? kTimeLimit
-                                  : options.exact_lights > 0                                       ? kAsManyAsAskedFor
-                                  : !search.options.earlier.empty()                                ? kEarlierRefined
-                                  : !explained && lights.size() == std::size_t(options.max_lights) ? kAsManyAsAllowed
-                                  : another_explains_more(error_curve, lights.size())
-                                      ? "further lights explain little more"
-                                      : kNoFurtherExplainsMore;
+  const Termination termination =
+      found.out_of_time                                                ? Termination::kTimeLimit
+      : options.exact_lights > 0                                       ? Termination::kAsManyAsAskedFor
+      : !search.options.earlier.empty()                                ? Termination::kEarlierRefined
+      : !explained && lights.size() == std::size_t(options.max_lights) ? Termination::kAsManyAsAllowed
+      : another_explains_more(error_curve, lights.size())              ? Termination::kFurtherExplainLittleMore
+                                                                       : Termination::kNoFurtherExplainsMore;
   return {std::move(lights),
           found.start,
           termination,

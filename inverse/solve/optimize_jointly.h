@@ -14,7 +14,7 @@ inline constexpr double kDefaultThesisThreshold = 0.12;  // of the lightcut, bef
 struct Optimum {
   LightEstimates lights;
   LightEstimates start;  // before the last optimisation
-  std::string termination;
+  Termination termination = Termination::kNoFurtherExplainsMore;
   std::vector<int> cut;  // of the light tree, nodes
   std::vector<LightSet> error_curve{};
   bool refits = false;   // the lights do not explain the target, or are tied together: their intensities come last

@@ -277,14 +277,12 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   JointRefinement result;
   if (start.empty()) {
     result.error = relative_error(observations, Column::Zero(observations.wanted.rows(), 3));
-    result.termination = "no lights";
     return result;
   }
   std::vector<Eigen::Vector3d> positions;
   for (const LightEstimate& light : start) positions.push_back(light.position);
   if (!response.places().settle(positions)) {
     result.error = std::numeric_limits<double>::infinity();
-    result.termination = "no place for all lights";
     return result;
   }
   result.lights = start;
@@ -309,7 +307,6 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
   }
   result.error = lights.residual_norm() / observations.target_norm;
   result.iterations = int(summary.iterations.size());
-  result.termination = ceres::TerminationTypeToString(summary.termination_type);
   return result;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "inverse/solve/observations.h"
 
 namespace chiaro::inverse {
@@ -10,7 +8,6 @@ struct JointRefinement {
   LightEstimates lights;
   double error = 0;  // (3.6)
   int iterations = 0;
-  std::string termination;
 };
 
 struct JointRefinementOptions {

@@ -58,16 +58,16 @@ Optimum optimize_as_published(const LightResponse& response, const Observations&
   if (options.exact_lights > 0) cut_options = {0, options.exact_lights, options.exact_lights};
   const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
-  if (cut.lights.empty()) return {{}, {}, "no light of the grid reaches the painted surfaces", {}};
+  if (cut.lights.empty()) return {{}, {}, Termination::kNoneReaches, {}};
   const SimplexOptimum optimum =
       optimize_simplex(response, observations, cut.lights, [&] { return clock.out_of_time(); });
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
   return {optimum.lights, cut.lights,
-          clock.out_of_time()                            ? kTimeLimit
-          : options.exact_lights > 0                     ? kAsManyAsAskedFor
-          : cut.error <= cut_options.error_threshold     ? "error threshold of the lightcut met"
-          : int(cut.lights.size()) == options.max_lights ? kAsManyAsAllowed
-                                                         : "every cluster is a light",
+          clock.out_of_time()                            ? Termination::kTimeLimit
+          : options.exact_lights > 0                     ? Termination::kAsManyAsAskedFor
+          : cut.error <= cut_options.error_threshold     ? Termination::kThresholdMet
+          : int(cut.lights.size()) == options.max_lights ? Termination::kAsManyAsAllowed
+                                                         : Termination::kEveryCluster,
           cut.nodes};
 }
 

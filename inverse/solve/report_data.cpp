@@ -89,7 +89,7 @@ json result_json(const SolveResult& result) {
           {"target_noise", result.target_noise},
           {"important_vertices", result.important_vertices},
           {"stage_seconds", seconds},
-          {"termination", result.termination}};
+          {"termination", words_for(result.termination)}};
 }
 
 std::vector<Vec3f> difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {

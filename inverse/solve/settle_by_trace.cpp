@@ -22,7 +22,9 @@ constexpr int kRounds = 3, kDrafts = 5, kMostFurther = 3;
 constexpr double kLeastPaths = 2e6;    // of all receivers together …
 constexpr int kEnoughSamples = 256;    // … or so many per receiver
 constexpr std::size_t kMany = 30000;   // receivers at most …
-constexpr std::size_t kSome = 8000;    // … and while lights are on their way
+constexpr std::size_t kSome = 8000;    // … and while lights are on their way, …
+constexpr std::size_t kFarMore = 4;    // … which alone are traced then where there are so many times as many, …
+constexpr double kDraftPaths = 5e5;    // … by so many paths of all together
 constexpr double kNear = 1e-3;         // of the region's diagonal: of all light, that by bounces hardly changes …
 constexpr double kVeryNear = 0.1;      // … or, so many times as far, not at all …
 constexpr double kCarried = 10;        // … or, so many times as far, can be carried along
@@ -95,13 +97,14 @@ struct Settling {
         near(kNear * double(all.response().grid().region.diagonal())) {}
 };
 
-FreeLights free_lights(const Settling& with, const LightEstimates& lights, const FreshTrace& traced) {
+// drawn: of the receivers that lights are settled by.
+FreeLights free_lights(const Settling& with, const LightEstimates& lights, const FreshTrace& drawn) {
   FreeLights free;
   free.traced.assign(lights.begin() + std::ptrdiff_t(with.held), lights.end());
   free.now = free.traced;
   const std::vector<Column> direct = direct_columns(with.some, free.now);
   for (std::size_t j = 0; j < free.now.size(); ++j) {
-    free.brought.push_back(column_of(numerics::chosen_from(traced.of_light[with.held + j], with.draw.chosen)));
+    free.brought.push_back(column_of(drawn.of_light[with.held + j]));
     free.indirect_traced.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
     free.number.push_back(with.held + j);
   }
@@ -125,9 +128,8 @@ LightEstimates each_place_once(const LightEstimates& lights) {
 }
 
 // What the receivers drawn want of the free lights.
-Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& traced) {
-  Observations observations = in_mean_weights(
-      observe_target(with.target, with.draw, numerics::chosen_from(traced.all.value, with.draw.chosen)));
+Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& drawn) {
+  Observations observations = in_mean_weights(observe_target(with.target, with.draw, drawn.all.value));
   for (const Column& brought : free.brought) observations.wanted += brought;
   if (with.held > 0) return with_capped_weights(observations);
   if (with.target.standard_error.empty()) return observations;
@@ -236,7 +238,7 @@ class Settler {
   LightsByTrace settle(const LightEstimates& lights) {
     LightsByTrace by_trace = come_to_rest_from(lights);
     const double allowed = kAstray * kAstray * as_found_->beyond_noise() + kNoiseOfNoise * as_found_->noise;
-    by_trace.went_astray = squared_error_of(by_trace.traced, problem_.target).beyond_noise() > allowed;
+    by_trace.went_astray = error_on_the_way(part_of(by_trace.traced, on_the_way_.draw)).beyond_noise() > allowed;
     return by_trace;
   }
 
@@ -248,8 +250,9 @@ class Settler {
       LightsByTrace by_trace = trace_lights(problem_, options_, control_, lights, clock_, first);
       by_trace.settling_seconds = seconds_;
       if (any_share_a_place(lights, with_.near)) return by_trace;
-      FreeLights free = free_lights(with_, lights, by_trace.traced);
-      const SettlingBench bench{with_.some.response(), wanted_of(with_, free, by_trace.traced), stop_};
+      const FreshTrace drawn = part_of(by_trace.traced, with_.draw);
+      FreeLights free = free_lights(with_, lights, drawn);
+      const SettlingBench bench{with_.some.response(), wanted_of(with_, free, drawn), stop_};
       if (any_hidden(bench, free)) return by_trace;
       descend(bench, free);
       const CarryAlong carried_along = [&](FreeLights& now) { carry_along_with(bench, first, lights, now); };
@@ -279,31 +282,49 @@ class Settler {
 
   FreshTrace trace_first_part_of(const LightEstimates& lights) {
     FreshTrace traced = trace_first_part(problem_, point_lights(lights), options_, control_, clock_);
-    if (!as_found_) as_found_ = squared_error_of(traced, problem_.target);
+    if (!as_found_) as_found_ = error_on_the_way(part_of(traced, on_the_way_.draw));
     clock_.finish("verification", verification_figures(traced, problem_.target));
     return traced;
   }
 
-  // Towards where they will settle, by first parts of traces, until they would hardly move. None goes.
+  SquaredError error_on_the_way(const FreshTrace& drawn) const {
+    return squared_error_of(drawn, problem_.target, on_the_way_.draw);
+  }
+
+  // Of the receivers that lights are on their way by: a part of a first part, which is kept, or where that would be far
+  // more receivers, by themselves.
+  FreshTrace trace_draft_of(const LightEstimates& lights) {
+    const std::size_t receivers = on_the_way_.draw.chosen.size();
+    if (problem_.target.receivers.size() <= kFarMore * receivers) {
+      first_part_ = trace_first_part_of(lights);
+      return part_of(*first_part_, on_the_way_.draw);
+    }
+    const int samples = int(kDraftPaths / double(receivers));
+    FreshTrace drawn = trace_drawn(problem_, point_lights(lights), on_the_way_.draw, samples, options_, control_);
+    if (!as_found_) as_found_ = error_on_the_way(drawn);
+    clock_.finish("draft", {{"receivers", double(receivers)}, {"samples", double(samples)}});
+    return drawn;
+  }
+
+  // Towards where they will settle, by traces that are drafts, until they would hardly move. None goes.
   void approach(LightEstimates& lights) {
     LightEstimates earlier, before;
     for (int draft = 0; draft < kDrafts && !out_of_time(); ++draft) {
-      FreshTrace traced = trace_first_part_of(lights);
-      FreeLights free = free_lights(on_the_way_, lights, traced);
-      const SettlingBench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, traced), stop_};
+      const FreshTrace drawn = trace_draft_of(lights);
+      FreeLights free = free_lights(on_the_way_, lights, drawn);
+      const SettlingBench bench{on_the_way_.some.response(), wanted_of(on_the_way_, free, drawn), stop_};
       const bool hidden = any_hidden(bench, free);
       if (!hidden) bench.descend(free.indirect, free.now);
       const bool rests = hidden || at_rest(bench, free, on_the_way_.near);
       if (!rests) {
+        first_part_.reset();
         earlier = std::exchange(before, lights);
         if (options_.exact_lights > 0) light_the_dark(free.now);
         lights = joined(on_the_way_, lights, free);
         come_to_rest(on_the_way_.some.response().places(), earlier, before, lights);
       }
       finish("approach", lights.size(), rests);
-      if (!rests) continue;
-      first_part_ = std::move(traced);
-      return;
+      if (rests) return;
     }
   }
 
@@ -365,7 +386,7 @@ class Settler {
   const FurtherLights further_;
   const std::function<bool()> stop_ = [this] { return out_of_time() || control_.stop_requested(); };
   std::optional<FreshTrace> first_part_{};  // of the trace where the lights are in the end; absent: they moved since
-  std::optional<SquaredError> as_found_{};  // of the lights as they were found, by a first part
+  std::optional<SquaredError> as_found_{};  // of the lights as they were found, by what is traced on the way
   double seconds_ = 0;                      // without the traces
   int added_lights_ = 0;
 };

@@ -187,9 +187,10 @@ LightsByTrace traced(const SolveProblem& problem, const SolveOptions& options, c
 }
 
 // Lights that settle may be fewer than the search came to.
-std::string termination_of(const Optimum& searched, std::size_t lights) {
+Termination termination_of(const Optimum& searched, std::size_t lights) {
   const bool fewer = lights < searched.lights.size();
-  return fewer && searched.termination == kAsManyAsAllowed ? kNoFurtherExplainsMore : searched.termination;
+  return fewer && searched.termination == Termination::kAsManyAsAllowed ? Termination::kNoFurtherExplainsMore
+                                                                        : searched.termination;
 }
 
 // Nobody says where the region of the lights ends, nor has a cache one of its own.
@@ -357,8 +358,8 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   const LightEstimates lights = report_lights(problem, options, *searched, by_trace, result);
   result.initial_relative_l2 = relative_error(searched->reported, illumination_of(searched->response, optimum.start));
   result.relative_l2_cached = relative_error(searched->reported, illumination_of(searched->response, lights));
-  result.termination =
-      by_trace.traced.cut_short || clock.out_of_time() ? kTimeLimit : termination_of(optimum, lights.size());
+  result.termination = by_trace.traced.cut_short || clock.out_of_time() ? Termination::kTimeLimit
+                                                                        : termination_of(optimum, lights.size());
   result.error_curve = optimum.error_curve;
   if (options.method == SolveMethod::kJoint) {
     const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : result.relative_l2_cached;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "inverse/solve/observations.h"
+#include "inverse/solve/termination.h"
 #include "inverse/target/target.h"
 #include "inverse/transport/allowed_places.h"
 #include "inverse/transport/transport_cache.h"
@@ -81,7 +82,7 @@ struct SolveResult {
   std::vector<LightSet> error_curve;  // of ever more lights; of the joint method alone
   std::vector<StageReport> stages;
   int important_vertices = 0;
-  std::string termination;
+  Termination termination = Termination::kNoFurtherExplainsMore;
   renderer::Box3f region;               // of the grid that lights were sought in; empty where they were in place
   bool lights_may_be_farther = false;   // than the largest region that was searched, and outside the scene
   std::vector<NotReached> not_reached;  // worst first; none where noise explains the error, or nearly so

@@ -9,12 +9,7 @@
 
 namespace chiaro::inverse {
 
-inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();    // of a figure
-inline constexpr const char* kTimeLimit = "time limit";                          // SolveResult::termination …
-inline constexpr const char* kAsManyAsAskedFor = "as many lights as asked for";  // … too
-inline constexpr const char* kAsManyAsAllowed = "as many lights as allowed";
-inline constexpr const char* kNoFurtherExplainsMore = "no further light explains more";
-inline constexpr const char* kEarlierRefined = "the earlier lights are refined";
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();  // of a figure
 
 using StageFigures = std::vector<std::pair<std::string, double>>;
 

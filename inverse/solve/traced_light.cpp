@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/not_reached.h"
-#include "inverse/solve/observe_target.h"
 #include "renderer/core/seconds_since.h"
 
 namespace chiaro::inverse {
@@ -28,13 +28,14 @@ bool has_fixed_light(const SolveProblem& problem) {
 }
 
 // One part of a trace.
-FreshTrace trace_part(const SolveProblem& problem, const renderer::Lights& lights, int samples, std::size_t number,
-                      const SolveOptions& options, const renderer::Control& control) {
+FreshTrace trace_part(const SolveProblem& problem, const std::vector<renderer::SurfaceSample>& receivers,
+                      const renderer::Lights& lights, int samples, std::size_t number, const SolveOptions& options,
+                      const renderer::Control& control) {
   renderer::Lights all = lights;
   all.insert(all.end(), problem.kept_lights.begin(), problem.kept_lights.end());
   const renderer::TraceOptions trace{samples, problem.bake.bounces, fresh_seed(options.seed, kParts + number), true};
   const auto start = std::chrono::steady_clock::now();
-  auto traced = trace_illumination_by_light(problem.tracer, problem.target.receivers.samples, all, trace, control);
+  auto traced = trace_illumination_by_light(problem.tracer, receivers, all, trace, control);
   traced.of_light.resize(lights.size());
   return {std::move(traced.total), std::move(traced.of_light), samples, {samples}, renderer::seconds_since(start)};
 }
@@ -54,6 +55,27 @@ FreshTrace joined(FreshTrace first, const FreshTrace& second) {
   return first;
 }
 
+// Of receivers, each by its weight, what squared_error_of() tells.
+struct SquaredSums {
+  double error = 0, noise = 0, spread = 0, wanted = 0;
+
+  // at: receiver's number in the illumination; i: in the target
+  void add(const renderer::Illumination& illumination, std::size_t at, const Target& target, std::size_t i,
+           double weight) {
+    error += weight * squared_norm(illumination.value[at] - target.illumination[i]);
+    wanted += weight * squared_norm(target.illumination[i]);
+    if (illumination.standard_error.empty()) return;
+    const double squared = weight * squared_norm(illumination.standard_error[at]);
+    noise += squared;
+    spread += squared * squared;
+  }
+  SquaredError relative() const {
+    const double all = error > 0 ? error / wanted : 0;
+    if (!(noise > 0)) return {all};
+    return {all, noise / wanted, std::sqrt(2 * spread) / wanted};
+  }
+};
+
 // Relative to the target.
 double noise_that_does_not_matter(const FreshTrace& traced, const Target& target) {
   const double of_target = target_noise(target);
@@ -70,7 +92,7 @@ struct Tracing {
   const renderer::Control& control;
 
   FreshTrace part(int samples, std::size_t number) const {
-    return trace_part(problem, lights, samples, number, options, control);
+    return trace_part(problem, problem.target.receivers.samples, lights, samples, number, options, control);
   }
   FreshTrace with_more(FreshTrace traced, int samples) const {
     if (samples <= 0) return traced;
@@ -150,17 +172,37 @@ FreshTrace trace_for_verification(const SolveProblem& problem, const renderer::L
 }
 
 SquaredError squared_error_of(const FreshTrace& traced, const Target& target) {
-  const std::vector<Vec3f>& standard_error = traced.all.standard_error;
-  const double error = relative_l2(traced.all.value, target.illumination, target.weight);
-  double noise = 0, spread = 0, wanted = 0;
-  for (std::size_t i = 0; i < standard_error.size(); ++i) {
-    const double squared = double(target.weight[i]) * squared_norm(standard_error[i]);
-    noise += squared;
-    spread += squared * squared;
-    wanted += double(target.weight[i]) * squared_norm(target.illumination[i]);
+  SquaredSums sums;
+  for (std::size_t i = 0; i < target.receivers.size(); ++i)
+    sums.add(traced.all, i, target, i, double(target.weight[i]));
+  return sums.relative();
+}
+
+SquaredError squared_error_of(const FreshTrace& traced, const Target& target, const ReceiverDraw& draw) {
+  SquaredSums sums;
+  for (std::size_t k = 0; k < draw.chosen.size(); ++k) {
+    const std::size_t i = draw.chosen[k];
+    sums.add(traced.all, k, target, i, double(target.weight[i]) / draw.probability[k]);
   }
-  if (!(noise > 0)) return {error * error};
-  return {error * error, noise / wanted, std::sqrt(2 * spread) / wanted};
+  return sums.relative();
+}
+
+FreshTrace part_of(const FreshTrace& traced, const ReceiverDraw& draw) {
+  FreshTrace drawn;
+  drawn.samples = traced.samples;
+  drawn.parts = traced.parts;
+  drawn.all.value = numerics::chosen_from(traced.all.value, draw.chosen);
+  if (!traced.all.standard_error.empty()) {
+    drawn.all.standard_error = numerics::chosen_from(traced.all.standard_error, draw.chosen);
+  }
+  for (const auto& light : traced.of_light) drawn.of_light.push_back(numerics::chosen_from(light, draw.chosen));
+  return drawn;
+}
+
+FreshTrace trace_drawn(const SolveProblem& problem, const renderer::Lights& lights, const ReceiverDraw& draw,
+                       int samples, const SolveOptions& options, const renderer::Control& control) {
+  const auto receivers = numerics::chosen_from(problem.target.receivers.samples, draw.chosen);
+  return trace_part(problem, receivers, lights, samples, 0, options, control);
 }
 
 double error_without_noise(const FreshTrace& traced, const Target& target) {

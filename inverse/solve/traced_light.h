@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "inverse/solve/observe_target.h"
 #include "inverse/solve/solve.h"
 #include "inverse/solve/stage_clock.h"
 #include "renderer/trace/trace_illumination.h"
@@ -23,7 +24,7 @@ std::vector<Vec3f> fixed_illumination(const SolveProblem& problem, const std::ve
 // Paths per receiver of a final evaluation: as asked for, or the most that this number of receivers gets.
 int verification_samples(const SolveOptions& options, std::size_t receivers);
 
-// All receivers' illumination, path traced afresh.
+// Receivers' illumination, path traced afresh: of all, where nothing else is said.
 struct FreshTrace {
   renderer::Illumination all;                // cd/m²; with what shines anyway
   std::vector<std::vector<Vec3f>> of_light;  // of the lights found, in their order
@@ -44,6 +45,8 @@ struct SquaredError {
   double beyond_noise() const { return std::max(0.0, all - noise); }
 };
 SquaredError squared_error_of(const FreshTrace& traced, const Target& target);
+// As far as receivers drawn from all tell, of which alone this trace is.
+SquaredError squared_error_of(const FreshTrace& traced, const Target& target, const ReceiverDraw& draw);
 
 // Of the lights, over all receivers (3.6): the squared noise of their trace, as far as it is known, is taken out, and
 // no less is left than that is known to.
@@ -64,6 +67,12 @@ FreshTrace trace_by_the_same_paths(const SolveProblem& problem, const renderer::
                                    const SolveOptions& options, const renderer::Control& control);
 FreshTrace completed(const SolveProblem& problem, const renderer::Lights& lights, FreshTrace first,
                      const SolveOptions& options, const renderer::Control& control, const StageClock& clock);
+
+// What a trace of all receivers has of those drawn.
+FreshTrace part_of(const FreshTrace& traced, const ReceiverDraw& draw);
+// Of receivers drawn alone, by so many paths of each.
+FreshTrace trace_drawn(const SolveProblem& problem, const renderer::Lights& lights, const ReceiverDraw& draw,
+                       int samples, const SolveOptions& options, const renderer::Control& control);
 
 // Fills in how far the lights of the result are from the target.
 void judge(const SolveProblem& problem, const SolveOptions& options, FreshTrace traced, SolveResult& result);

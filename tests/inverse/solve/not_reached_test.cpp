@@ -129,7 +129,7 @@ TEST(NotReached, SolvesSayWhatMayHelp) {
   options.max_lights = 1;
   const SolveResult one = solve(problem, options);
   EXPECT_EQ(one.advice, "more lights may come closer: 1 was allowed");
-  EXPECT_EQ(one.termination, "as many lights as allowed");
+  EXPECT_EQ(one.termination, Termination::kAsManyAsAllowed);
   options.time_limit = 1e-9;
   EXPECT_NE(solve(problem, options).advice.find("time limit"), std::string::npos);
   options.time_limit = 0;

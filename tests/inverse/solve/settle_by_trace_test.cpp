@@ -17,17 +17,22 @@ constexpr int kFreshSamples = 1024;
 constexpr double kPrecise = 0.008;  // metres: what the noise of target and trace leave, root mean square over seeds
 constexpr std::uint64_t kSeeds = 8;
 
+LightsByTrace settle_on(const PaintedCorner& corner, const Target& target, const LightEstimates& lights,
+                        const SolveOptions& options, std::size_t held, StageClock& clock) {
+  const SolveProblem problem{corner.tracer(), target, {}, {}, bake_settings(-1), {}};
+  TransportCache nothing;
+  nothing.grid = make_light_grid(corner.tracer(), {});
+  const LightResponse search(corner.tracer(), {}, nothing);
+  return settle_by_trace(problem, options, {}, search, {lights, {}, {}, {}, {}, false, true, held}, clock);
+}
+
 class SettleByTrace : public ::testing::Test {
  protected:
   LightsByTrace settle(const Target& target, const LightEstimates& lights, SolveOptions options = {},
                        std::size_t held = 0) const {
     if (options.verification_samples == 0) options.verification_samples = 400;
-    const SolveProblem problem{corner_.tracer(), target, {}, {}, bake_settings(-1), {}};
-    TransportCache nothing;
-    nothing.grid = make_light_grid(corner_.tracer(), {});
-    const LightResponse search(corner_.tracer(), {}, nothing);
     StageClock clock;
-    return settle_by_trace(problem, options, {}, search, {lights, {}, "", {}, {}, false, true, held}, clock);
+    return settle_on(corner_, target, lights, options, held, clock);
   }
 
   // Of the farthest light, and of the one that is most too bright or too dark in a channel: root mean square over
@@ -140,6 +145,30 @@ TEST_F(SettleByTrace, LightsFarFromTheirPlaceAreTracedAgain) {
     const LightEstimates known = known_lights(count);
     EXPECT_LT(errors_after_settling(known, displaced(known, 0.1)).metres, kPrecise);
   }
+}
+
+// Of far more receivers than lights on their way need, these alone are traced until they have come near.
+TEST(SettleByTraceOfMany, LightsOnTheirWayAreTracedInDrafts) {
+  const PaintedCorner corner(0.05F);
+  ASSERT_GT(corner.receivers().size(), 32000U);
+  const LightEstimates known = known_lights(2);
+  const auto lit =
+      trace_illumination(corner.tracer(), corner.receivers().samples, point_lights(known), {.samples = 16, .seed = 99});
+  const Target target{corner.receivers(), lit.value, std::vector<float>(corner.receivers().size(), 1.0F), {}};
+  SolveOptions options;
+  options.verification_samples = 64;
+  StageClock clock;
+  const LightsByTrace settled = settle_on(corner, target, displaced(known, 0.1), options, 0, clock);
+  const auto stages = [&](const char* name) {
+    return std::count_if(clock.stages().begin(), clock.stages().end(),
+                         [&](const StageReport& stage) { return stage.name == name; });
+  };
+  EXPECT_GE(stages("draft"), 2);
+  EXPECT_LE(stages("verification"), 3) << "first part, all, and what is carried along";
+  EXPECT_FALSE(settled.went_astray);
+  EXPECT_LT(farthest_from(known, positions_of(settled.lights)), 2 * kPrecise);
+  const double noise = relative_l2(lit.value, settled.traced.all.value, target.weight);
+  EXPECT_NEAR(squared_error_of(settled.traced, target).all, noise * noise, 0.1 * noise * noise);
 }
 
 TEST_F(SettleByTrace, LightsThatAreThereForNothingGo) {

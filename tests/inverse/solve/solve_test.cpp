@@ -144,14 +144,14 @@ TEST(Solve, ATimeLimitEndsAllOfItAndIsWhatIsSaid) {
   for (const SolveProblem& solved : {problem, in_place}) {
     const SolveResult result = solve(solved, options);
     EXPECT_FALSE(result.lights.empty());
-    EXPECT_EQ(result.termination, "time limit");
+    EXPECT_EQ(result.termination, Termination::kTimeLimit);
     const auto check = std::find_if(result.stages.begin(), result.stages.end(),
                                     [](const StageReport& stage) { return stage.name == "verification"; });
     ASSERT_NE(check, result.stages.end());
     EXPECT_EQ(check->figures.front(), (std::pair<std::string, double>("samples", 16)));
   }
   options.method = SolveMethod::kThesis;
-  EXPECT_EQ(solve(problem, options).termination, "time limit");
+  EXPECT_EQ(solve(problem, options).termination, Termination::kTimeLimit);
 }
 
 // Seven centimetres above a receiver of the floor, which then holds nearly all of the target's squared norm.
@@ -293,7 +293,7 @@ TEST(Solve, SaysWhatItFound) {
   EXPECT_EQ(result.important_vertices, 300);
   EXPECT_EQ(result.illumination.size(), corner.receivers().size());
   EXPECT_NEAR(result.relative_l2, relative_l2(result.illumination, target.illumination, target.weight), 1e-9);
-  EXPECT_FALSE(result.termination.empty());
+  EXPECT_EQ(result.termination, Termination::kFurtherExplainLittleMore);
   EXPECT_FALSE(result.stages.empty());
   double seconds = 0;
   for (const StageReport& stage : result.stages) seconds += stage.seconds;
