@@ -50,13 +50,12 @@ void warn_of_idle_options(const RenderCommand& options, Session& session) {
   if (options.frame.lens.shutter && !options.preview) session.warn("--shutter: exposes nothing without --preview");
 }
 
-// Returns as save_frame().
-std::size_t save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Lights& lights,
-                         const renderer::Frame& frame) {
+HalfLosses save_outputs(const RenderCommand& options, const renderer::Camera& camera, const renderer::Lights& lights,
+                        const renderer::Frame& frame) {
   const FrameOrigin origin = frame_origin({options.scene, options.lights, lights}, options.transport, options.common);
-  const std::size_t held = save_frame(frame, camera, options.output, origin, options.frame);
+  const HalfLosses lost = save_frame(frame, camera, options.output, origin, options.frame);
   if (options.preview) save_preview(frame.image, preview_of(options), options.frame);
-  return held;
+  return lost;
 }
 
 std::string text_of_samples(const renderer::Frame& frame) {
@@ -113,8 +112,8 @@ int run_render(const RenderCommand& options) {
   const renderer::Camera camera = choose_camera(*stage.scene, options.camera, options.frame.size, session);
   const renderer::Frame frame = render_frame(*stage.tracer, camera, lights, options.frame,
                                              {trace_options(transport_of(options), options.common), session.control()});
-  const std::size_t held = save_outputs(options, camera, lights, frame);
-  warn_of_frame(frame, held, options.output, session);
+  const HalfLosses lost = save_outputs(options, camera, lights, frame);
+  warn_of_frame(frame, lost, options.output, session);
   print_summary(session, options, camera, frame);
   return frame.interrupted ? interrupted_with(options.output) : kDone;
 }

@@ -92,8 +92,8 @@ renderer::Frame render_camera(const RunCommand& options, const LoadedStage& stag
                                        {trace_options(transport, options.common), session.control()});
   if (frame.interrupted) throw renderer::Interruption();
   const FrameOrigin origin = frame_origin({options.scene, kLightsFile, lights}, transport, options.common);
-  const std::size_t held = save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
-  warn_of_frame(frame, held, camera.name, session);
+  const HalfLosses lost = save_frame(frame, camera, beside(file, ".exr"), origin, options.frame);
+  warn_of_frame(frame, lost, camera.name, session);
   save_preview(frame.image, beside(file, ".png"), options.frame);
   return frame;
 }

@@ -182,8 +182,25 @@ FrameOrigin frame_origin(const LitScene& scene, const TransportOptions& transpor
           .environment = environment_among(scene.lights)};
 }
 
-std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
-                       const FrameOrigin& origin, const FrameOptions& options) {
+bool is_too_dim(const Image& image, const renderer::ChannelTypes& types) {
+  constexpr float kLeastNormalHalf = 6.103515625e-5F;
+  float brightest = 0;
+  for (const char* const name : {"R", "G", "B"}) {
+    const int c = image.find_channel(name);
+    if (c < 0 || types[std::size_t(c)] != renderer::PixelType::kHalf) return false;
+    for (std::size_t i = std::size_t(c); i < image.pixels.size(); i += image.channel_names.size()) {
+      brightest = std::max(brightest, image.pixels[i]);
+    }
+  }
+  return brightest > 0 && brightest < kLeastNormalHalf;
+}
+
+HalfLosses losses_of(const Image& image, const renderer::ChannelTypes& types) {
+  return {renderer::pixels_beyond_half(image, types), is_too_dim(image, types)};
+}
+
+HalfLosses save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
+                      const FrameOrigin& origin, const FrameOptions& options) {
   const double aspect_ratio = double(frame.image.width) / frame.image.height;
   renderer::Attributes attributes = frame_attributes(camera, aspect_ratio, origin);
   add_attributes(attributes, frame, options);
@@ -192,26 +209,29 @@ std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& cam
   const renderer::ChannelTypes type = channel_types(frame.image, options.full_float);
   if (options.output_space.empty()) {
     renderer::save_image(frame.image, path, type, attributes);
-    return renderer::pixels_beyond_half(frame.image, type);
+    return losses_of(frame.image, type);
   }
   Image converted = frame.image;
   convert_to_output_space(converted, options);
   renderer::save_image(converted, path, type, attributes);
-  return renderer::pixels_beyond_half(converted, type);
+  return losses_of(converted, type);
 }
 
-void warn_of_frame(const renderer::Frame& frame, std::size_t held, const std::string& name, Session& session) {
+void warn_of_frame(const renderer::Frame& frame, const HalfLosses& lost, const std::string& name, Session& session) {
   if (frame.dropped_samples > 0) {
     session.warn(fmt::format(
         "{}: {} left black", name,
         renderer::counted(frame.dropped_samples, "sample was not finite and is", "samples were not finite and are")));
   }
+  const std::size_t held = lost.held;
   if (held > 0) {
     session.warn(fmt::format("{}: {} held at 65504 (--float keeps {})", name,
                              renderer::counted(held, "pixel is brighter than half floats hold, and is",
                                                "pixels are brighter than half floats hold, and are"),
                              held == 1 ? "it" : "them"));
   }
+  if (lost.too_dim)
+    session.warn(fmt::format("{}: is too dim for half floats, which round it (--float keeps it)", name));
 }
 
 void save_preview(const Image& frame, const std::filesystem::path& path, const FrameOptions& options) {

@@ -56,14 +56,20 @@ struct LitScene {
   const renderer::Lights& lights;
 };
 
+// What half floats do not hold of a frame.
+struct HalfLosses {
+  std::size_t held = 0;  // pixels, at the largest
+  bool too_dim = false;  // its brightest colour is fewer steps of halves than they have of brighter ones
+};
+
 FrameOrigin frame_origin(const LitScene& scene, const TransportOptions& transport, const CommonOptions& common);
 
-// What is to be said of a frame besides its figures. held: as save_frame() returned.
-void warn_of_frame(const renderer::Frame& frame, std::size_t held, const std::string& name, Session& session);
+// What is to be said of a frame besides its figures.
+void warn_of_frame(const renderer::Frame& frame, const HalfLosses& lost, const std::string& name, Session& session);
 
-// Writes the frame as EXR with all of its attributes. Returns how many of its pixels are held at the largest half.
-std::size_t save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
-                       const FrameOrigin& origin, const FrameOptions& options);
+// Writes the frame as EXR with all of its attributes.
+HalfLosses save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
+                      const FrameOrigin& origin, const FrameOptions& options);
 
 // Writes the frame's colours as the view shows them (8 bits).
 void save_preview(const renderer::Image& frame, const std::filesystem::path& path, const FrameOptions& options);

@@ -39,7 +39,7 @@ struct GeodesicDistance {
 };
 
 // The length of the shortest way on the surface from each vertex to the sources, up to `reach`; infinite beyond. Exact
-// up to rounding as long as edges are long; where windows have become narrower than 1/200 of the reach, vertices take
+// up to rounding as long as edges are long; where windows have become narrower than 1/500 of the reach, vertices take
 // over, each from two of a face. Only faces within reach are visited.
 // Source: Xin & Wang, Improving Chen and Han's algorithm on the discrete geodesic problem, 2009; for vertices, Novotni
 // & Klein, Computing geodesic distances on triangular meshes, 2002.

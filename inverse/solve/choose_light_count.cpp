@@ -145,7 +145,12 @@ class Search {
     for (JointRefinement& set : refine_all(worth_it, how)) keep(std::move(set));
   }
 
+  // Where the rules of places have them, if they have room for all.
   void keep_as_it_is(LightEstimates lights) {
+    std::vector<Eigen::Vector3d> positions;
+    for (const LightEstimate& light : lights) positions.push_back(light.position);
+    if (!response_.places().settle(positions)) return;
+    for (std::size_t j = 0; j < lights.size(); ++j) lights[j].position = positions[j];
     const std::vector<Column> columns = evaluate_columns(response_, lights, Evaluation::kTracedVisibility);
     const double error = refit_intensities(observations_, columns, lights);
     keep({std::move(lights), error, 0});

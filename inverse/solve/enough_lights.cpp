@@ -31,15 +31,17 @@ bool fill_up_to_wanted(const SolveProblem& problem, const SolveOptions& options,
   };
   if (may_share_places(problem)) optimum.lights = as_many_as_asked_for(std::move(optimum.lights), wanted);
   optimum.lights = filled(std::move(optimum.lights));
-  if (may_share_places(problem) || options.exact_lights == 0 || optimum.held > 0) return optimum.lights.size() > before;
+  const bool more = optimum.lights.size() > before;
+  if (may_share_places(problem) || options.exact_lights == 0 || optimum.held > 0) return more;
   LightEstimates others = better_of_fewer(searched, optimum);
-  if (others.empty()) return optimum.lights.size() > before;
+  if (others.empty()) return more;
   others = filled(std::move(others));
   const auto error = [&](const LightEstimates& lights) {
     return relative_error(searched.judged, illumination_of(searched.response, lights));
   };
-  if (others.size() >= wanted && error(others) < error(optimum.lights)) optimum.lights = std::move(others);
-  return true;
+  const bool better = others.size() >= wanted && error(others) < error(optimum.lights);
+  if (better) optimum.lights = std::move(others);
+  return more || better;
 }
 
 }  // namespace chiaro::inverse

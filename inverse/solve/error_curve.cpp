@@ -3,15 +3,6 @@
 #include <algorithm>
 
 namespace chiaro::inverse {
-namespace {
-
-// Of the first set of as many, or of more.
-std::vector<LightSet>::iterator place_of(const LightSet& set, std::vector<LightSet>& curve) {
-  return std::find_if(curve.begin(), curve.end(),
-                      [&](const LightSet& other) { return other.lights.size() >= set.lights.size(); });
-}
-
-}  // namespace
 
 LightSet set_of(const LightEstimates& lights, double relative_l2) {
   LightSet set{{}, relative_l2};
@@ -20,22 +11,15 @@ LightSet set_of(const LightEstimates& lights, double relative_l2) {
 }
 
 void put_in_curve(LightSet set, std::vector<LightSet>& curve) {
-  const auto as_good = [&](const LightSet& other) {
-    return other.lights.size() <= set.lights.size() && other.relative_l2 <= set.relative_l2;
-  };
-  if (set.lights.empty() || std::any_of(curve.begin(), curve.end(), as_good)) return;
-  const auto at = place_of(set, curve);
+  if (set.lights.empty()) return;
+  const auto at = std::find_if(curve.begin(), curve.end(), [&](const LightSet& other) {
+    return other.lights.size() >= set.lights.size();  // as many, or more
+  });
   if (at != curve.end() && at->lights.size() == set.lights.size()) {
     *at = std::move(set);
   } else {
     curve.insert(at, std::move(set));
   }
-}
-
-void have_in_curve(LightSet set, std::vector<LightSet>& curve) {
-  const auto at = place_of(set, curve);
-  if (set.lights.empty() || (at != curve.end() && at->lights.size() == set.lights.size())) return;
-  curve.insert(at, std::move(set));
 }
 
 LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
@@ -51,11 +35,10 @@ LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
 }
 
 void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
-  for (std::size_t k = 1; k < curve.size(); ++k) {
-    const LightSet& fewer = curve[k - 1];
-    if (curve[k].relative_l2 <= fewer.relative_l2) continue;
-    const std::size_t count = curve[k].lights.size();
-    curve[k] = set_of(as_many_as_asked_for(light_estimates(fewer.lights), count), fewer.relative_l2);
+  for (std::size_t k = 0; k < curve.size(); ++k) {
+    const LightSet& best = k == 0 || curve[k].relative_l2 <= curve[k - 1].relative_l2 ? curve[k] : curve[k - 1];
+    const LightEstimates lit = as_many_as_asked_for(light_estimates(best.lights), curve[k].lights.size());
+    if (!lit.empty()) curve[k] = set_of(lit, best.relative_l2);
   }
 }
 

@@ -184,9 +184,13 @@ SolveResult fit_in_place(const SolveProblem& problem, const SolveOptions& option
   result.optimal_seconds =
       clock.finish("nnls", {{"relative_l2", result.relative_l2_cached}, {"kkt_residual", fit.kkt_residual}});
   if (std::none_of(fit.intensity.begin(), fit.intensity.end(), [](const auto& l) { return (l > 0).any(); })) {
-    throw renderer::Error({problem.tracer.scene().path, "solve",
-                           "no light possible: none of the scene's lights brightens the painted surfaces",
-                           "a target that they can produce, or lights that may move"});
+    const bool reach =
+        std::any_of(columns.begin(), columns.end(), [](const Column& c) { return (c.array() > 0).any(); });
+    throw renderer::Error(
+        {problem.tracer.scene().path, "solve",
+         reach ? "no light possible: none of the scene's lights brings what shines already closer to the target"
+               : "no light possible: none of the scene's lights brightens the painted surfaces",
+         "a target that they can produce, or lights that may move"});
   }
   for (const Eigen::Array3d& intensity : fit.intensity) check_brightness(problem, intensity.maxCoeff());
   std::vector<Eigen::Array3d> before;

@@ -10,7 +10,8 @@ struct HeldOutFit {
   double relative_l2;  // (3.6)
 };
 
-// Receivers that lights are not fitted to, which tell whether a further light is there or fits noise.
+// Receivers drawn by themselves, whatever lights are fitted to, which tell whether a further light is there or fits
+// noise. Where a target has few receivers they are mostly the same.
 class HeldOut {
  public:
   // Keeps a reference to the tracer. judged: the same observations, as the objective weighs them. settings: of the

@@ -11,7 +11,7 @@ namespace chiaro::inverse {
 // One light per basin of the intensity field on the lattice, section 3.3.2; merged by (3.7) and (3.8).
 LightEstimates segment_distribution(const LightDistribution& distribution, const Observations& observations);
 
-// Light tree of section 3.4.1: nodes[k] represents node k of the tree.
+// Light tree of section 3.4.1: representatives[k] stands for node k.
 struct LightTree {
   numerics::BinaryTree tree;
   LightEstimates representatives;

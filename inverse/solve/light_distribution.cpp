@@ -41,7 +41,7 @@ Eigen::Vector3d fine_position(const LightGrid& grid, const std::array<std::size_
 
 std::size_t coarse_stride(const LightGrid& grid) {
   std::size_t stride = 1;
-  while (grid.positions.size() / (stride * stride * stride) > kMostCoarseLights) stride *= 2;
+  while (grid.node_light_count() / (stride * stride * stride) > kMostCoarseLights) stride *= 2;
   return stride;
 }
 
@@ -65,7 +65,7 @@ UnityLights spread_coarsely(const LightResponse& response, std::size_t stride) {
   return spread;
 }
 
-// The lattice has twice the grid's density; nodes are taken around each survivor, as far as the next coarse ones.
+// The lattice has twice the grid's density; nodes are taken around each survivor, half way to the next coarse ones.
 UnityLights spread_finely(const LightResponse& response, const UnityLights& survivors, std::size_t stride,
                           const std::array<int, 3>& lattice) {
   const LightGrid& grid = response.grid();

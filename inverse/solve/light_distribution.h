@@ -22,8 +22,8 @@ struct LightDistribution {
   std::vector<Column> columns;     // of rounds[1].lights
 };
 
-// weak_light: w of eq. (3.5); a light is deleted if ‖l φ‖ < w ‖Ψ‖. The first round takes the grid's lights, every
-// second node of an axis where there are more than a thousand; the second a lattice twice as fine around the survivors.
+// weak_light: w of eq. (3.5); a light is deleted if ‖l φ‖ < w ‖Ψ‖. The first round takes the lights at the
+// grid's nodes, or where these are more than a thousand those at every second, fourth … of each axis; the second a lattice twice as fine around the survivors.
 LightDistribution estimate_light_distribution(const LightResponse& response, const Observations& observations,
                                               double weak_light);
 

@@ -73,7 +73,9 @@ LightsByTrace with_none_dark(const SolveProblem& problem, const SolveOptions& op
   const std::size_t count = by_trace.lights.size();
   if (!may_share_places(problem)) {
     light_the_dark(by_trace.lights);
-    return trace_lights(problem, options, control, by_trace.lights, clock);
+    LightsByTrace lit = trace_lights(problem, options, control, by_trace.lights, clock);
+    lit.settling_seconds = by_trace.settling_seconds;
+    return lit;
   }
   LightEstimates lit = as_many_as_asked_for(by_trace.lights, count);
   if (lit.size() == count) by_trace.lights = std::move(lit);

@@ -154,9 +154,11 @@ void RegionSearch::look_where_light_comes_from(StageClock& clock) {
 void RegionSearch::look_beside_surfaces(const RegionSearch* before, bool goes_on, StageClock& clock) {
   const TransportCache& cache = transport.cache;
   const bool same_vertices = before != nullptr && before->basis == basis;
+  BakeSettings settings = cache.settings;
+  settings.seed = fresh_seed(basis->options.seed, 9);
   exact_ = same_vertices
                ? before->exact_
-               : std::make_shared<const ExactIndirect>(problem.tracer, basis->samples, cache.settings, basis->control);
+               : std::make_shared<const ExactIndirect>(problem.tracer, basis->samples, settings, basis->control);
   clock.finish_transport("exact_indirect", {});
   if (!goes_on && basis->options.earlier.empty() && !ties_lights_together(problem) && !clock.out_of_time()) {
     beside_surfaces_ = find_lights_beside_surfaces(response, *exact_, judged, most_lights(basis->options));
@@ -258,6 +260,11 @@ bool RegionSearch::misses_less_than(const RegionSearch& other) const {
 Optimum RegionSearch::conclude(StageClock& clock) const {
   return is_joint(*basis) ? inverse::conclude(joint_search(), found_, clock)
                           : optimize_as_published(response, basis->published, tree, basis->options, clock);
+}
+
+double RegionSearch::exact_error(LightEstimates lights) const {
+  exact_->correct(response, lights);
+  return relative_error(reported, illumination_of(response, lights));
 }
 
 double RegionSearch::held_out_error(const LightEstimates& lights) const {

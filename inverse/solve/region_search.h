@@ -50,6 +50,8 @@ class RegionSearch {
   Optimum conclude(StageClock& clock) const;
   // Of lights, (3.6), at held-out receivers, which there must be.
   double held_out_error(const LightEstimates& lights) const;
+  // Of lights, (3.6), at the important vertices, by light that is not interpolated. Joint method alone.
+  double exact_error(LightEstimates lights) const;
 
   const std::shared_ptr<const SearchBasis> basis;
   const SolveProblem problem;

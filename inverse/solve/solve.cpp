@@ -339,6 +339,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
     require_fitting_cache(problem);
     return fit_in_place(problem, options, control);
   }
+  require_free_space(problem);
 
   const std::unique_ptr<RegionSearch> searched = search(problem, options, control, clock, result);
   if (options.exact_lights == 0 && !searched->brings_closer()) none_brings_closer(problem);
@@ -346,10 +347,10 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.important_vertices = int(importance.chosen.size());
   const double before = clock.total();
   Optimum optimum = searched->conclude(clock);
-  result.optimal_seconds += clock.total() - before;
   if (fill_up_to_wanted(problem, options, *searched, {clock, control}, optimum)) {
-    result.optimal_seconds += clock.finish("filling_up", {{"lights", double(optimum.lights.size())}});
+    clock.finish("filling_up", {{"lights", double(optimum.lights.size())}});
   }
+  result.optimal_seconds += clock.total() - before;
   require_all_lights(problem, options, searched->response, optimum.lights);
   check_brightness(problem, brightest_of(optimum.lights));
   LightsByTrace by_trace = traced(problem, options, control, searched->response, optimum, clock);
@@ -362,9 +363,9 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
                                                                         : termination_of(optimum, lights.size());
   result.error_curve = optimum.error_curve;
   if (options.method == SolveMethod::kJoint) {
-    const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : result.relative_l2_cached;
+    // Those that have settled fit the important vertices less closely, and the target more, than those of the search.
+    const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : searched->exact_error(lights);
     put_in_curve(set_of(lights, error), result.error_curve);
-    have_in_curve(set_of(lights, error), result.error_curve);  // a further solve may ask for as many
     if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;

@@ -13,7 +13,8 @@ struct PictureFrame {
 };
 
 // R, G, B: cd/m² of illumination, interpolated between the receivers that weigh anything; A: the part of the pixel that
-// shows surface of which the target knows the illumination. Colours are multiplied by it. Four samples a pixel.
+// shows surface of which the target knows the illumination. Colours are multiplied by it. Four samples a pixel,
+// or sixteen of scenes with blended surfaces.
 renderer::Image illumination_picture(const renderer::RayTracer& tracer, const Target& target, const PictureFrame& frame,
                                      const renderer::Control& control = {});
 

@@ -233,6 +233,7 @@ TargetFromValues target_from_values(const Receivers& receivers, std::span<const 
 Target combine(const Target& a, const Target& b) {
   CHIARO_CHECK(a.receivers.size() == b.receivers.size());
   Target sum = a;
+  sum.receivers.samples_moved = a.receivers.samples_moved || b.receivers.samples_moved;
   const bool errors = !a.standard_error.empty() && !b.standard_error.empty();
   if (!errors) sum.standard_error.clear();
   for (std::size_t i = 0; i < sum.illumination.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/file_lock.h"
 #include "renderer/core/seconds_since.h"
+#include "renderer/image/exr_header.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -132,13 +133,14 @@ Baker::Place take_over(Parts old, Range range, TransportCacheWriter& writer, con
   return end.place;
 }
 
-// nullptr: it ends within its header, and has nothing.
+// nullptr: there is none, or it ends within its header, and has nothing. Error where it is another kind of file, or of
+// another version.
 std::unique_ptr<TransportCacheReader> open_unfinished(const fs::path& file) {
-  try {
-    return std::make_unique<TransportCacheReader>(file);
-  } catch (const Error&) {
-    return nullptr;
-  }
+  constexpr std::uintmax_t kMagicAndVersion = 8;  // bytes
+  std::error_code ignored;
+  const bool begun = fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) >= kMagicAndVersion;
+  if (!begun || renderer::find_exr_header_damage(file)) return nullptr;
+  return std::make_unique<TransportCacheReader>(file);
 }
 
 // A bake that is being written, by this process alone.

@@ -3,10 +3,10 @@
 //
 //   r = D + K x − x,   d ← α d + β r,   x ← x + d
 //
-// Of all ways to choose α and β beforehand it shrinks the error fastest where the eigenvalues of K lie between −λ and
-// λ: each step to λ / (1 + √(1 − λ²)) where a bounce alone leaves λ. Surfaces that nearly touch make some of them
-// negative. Source: Golub, Varga, Chebyshev Semi-Iterative Methods, Successive Overrelaxation Iterative Methods, and
-// Second Order Richardson Iterative Methods, 1961.
+// Of all ways to choose α and β beforehand it shrinks the error fastest where the eigenvalues of K lie within an ellipse
+// about 0 of semi-axes λ, along the real numbers, and μ: each step to (λ + μ) / (1 + √(1 − λ² + μ²)) where a bounce
+// alone leaves λ. Surfaces that nearly touch make some of them negative. Source: Golub, Varga, Chebyshev Semi-Iterative
+// Methods, Successive Overrelaxation Iterative Methods, and Second Order Richardson Iterative Methods, 1961.
 
 #include <array>
 #include <vector>
@@ -18,7 +18,7 @@ namespace chiaro::inverse {
 struct Interreflection {
   SparseTransport one_bounce;               // K
   std::array<double, 3> spectral_radius{};  // λ, per channel
-  std::array<double, 3> imaginary{};        // μ
+  std::array<double, 3> imaginary{};        // μ: as far as so much chance spreads eigenvalues (circular law)
 };
 
 // K has as many columns as rows.

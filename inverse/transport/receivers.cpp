@@ -238,7 +238,7 @@ double fraction_on_surface(const renderer::RayTracer& tracer, const Receivers& r
   const renderer::Box3f& box = tracer.bounds();
   const float rounding = renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
   const float reach = std::max(1e-3F * box.diagonal(), kRoundings * rounding);
-  const std::size_t stride = std::max<std::size_t>(1, receivers.size() / kMostProbes);
+  const std::size_t stride = std::max<std::size_t>(1, (receivers.size() + kMostProbes - 1) / kMostProbes);
   std::size_t probes = 0, found = 0;
   for (std::size_t i = 0; i < receivers.size(); i += stride, ++probes) {
     const renderer::SurfaceSample& s = receivers.samples[i];

@@ -300,8 +300,10 @@ Image apply_display_view(const Image& image, const std::filesystem::path& config
   Image shown = rgb_of(image);
   const ocio::ConstConfigRcPtr loaded = load_config(config);
   const auto processor = cpu_processor(loaded, view_transform(loaded, config, options), config);
-  const float gain = std::exp2(options.exposure);
-  for (float& value : shown.pixels) value = std::clamp(value * gain, -kWhiteInAnyView, kWhiteInAnyView);
+  const double gain = std::exp2(double(options.exposure));  // may be more than a float holds
+  for (float& value : shown.pixels) {
+    value = float(std::clamp(double(value) * gain, -double(kWhiteInAnyView), double(kWhiteInAnyView)));
+  }
   apply(*processor, shown.pixels);
   std::transform(shown.pixels.begin(), shown.pixels.end(), shown.pixels.begin(), display_value);
   return shown;

@@ -7,7 +7,8 @@
 
 namespace chiaro::renderer {
 
-// What is wrong with it: attributes that are longer than the file, and tiles or lines beyond all measure. Absent where nothing is, and for other files.
+// What is wrong with it: attributes that are longer than the file, and tiles or lines beyond all measure. Absent where
+// nothing is, and for other files.
 // Source: Industrial Light & Magic, OpenEXR File Layout, section "Header".
 std::optional<std::string> find_exr_header_damage(const std::filesystem::path& path);
 

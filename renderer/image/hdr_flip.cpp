@@ -56,9 +56,9 @@ void choose_exposures(const Image& reference, const Image& a, HdrFlip& result) {
 }
 
 Image shown_at(const Image& image, double exposure) {
-  const float gain = float(std::exp2(exposure));
+  const double gain = std::exp2(exposure);  // may be more than a float holds
   Image shown = image;
-  for (float& value : shown.pixels) value = tone_mapped(std::min(light_of(value) * gain, 1e6F));
+  for (float& value : shown.pixels) value = tone_mapped(float(std::min(double(light_of(value)) * gain, 1e6)));
   return shown;
 }
 

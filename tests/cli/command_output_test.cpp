@@ -81,6 +81,17 @@ TEST(CliRender, SaysHowManyPixelsHalvesDoNotHold) {
   EXPECT_EQ(render_preview(folder, {}).standard_error.find(held), std::string::npos);
 }
 
+TEST(CliRender, SaysThatAFrameIsTooDimForHalves) {
+  const TemporaryFolder folder;
+  const std::string lights =
+      folder.write("lights.json", R"({"lights":[{"position":[0,1,0],"intensity":[1e-6,1e-6,1e-6]}]})").string();
+  const std::string dim = "is too dim for half floats";
+  const Outcome halves = render_preview(folder, {"--lights", lights});
+  EXPECT_NE(halves.standard_error.find(dim), std::string::npos) << halves.standard_error;
+  EXPECT_EQ(render_preview(folder, {"--lights", lights, "--float"}).standard_error.find(dim), std::string::npos);
+  EXPECT_EQ(render_preview(folder, {}).standard_error.find(dim), std::string::npos);
+}
+
 TEST(CliRender, NoiseOfOneSampleIsNotKnown) {
   const TemporaryFolder folder;
   EXPECT_NE(render_preview(folder, {}).standard_output.find("not known"), std::string::npos);

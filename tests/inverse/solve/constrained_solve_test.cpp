@@ -52,6 +52,32 @@ TEST_F(ConstrainedSolve, LightsKeepTheirDistances) {
   }
 }
 
+// Where time is up before any light has been moved, too.
+TEST_F(ConstrainedSolve, LightsKeepTheirPlacesWhereTimeIsUp) {
+  const Box3f box{{2.6F, 1, 2}, {3.6F, 2.6F, 3.5F}};
+  const PlaceRules rules[] = {{.surface_distance = 1.2}, {.light_distance = 2.5}, {.boxes = {box}}};
+  for (const PlaceRules& rule : rules) {
+    SolveProblem ruled = problem(target_);
+    ruled.places = rule;
+    SolveOptions hurried = options();
+    hurried.time_limit = 1e-9;
+    const SolveResult result = solve(ruled, hurried);
+    std::vector<std::vector<renderer::PointLight>> sets{lights_of(result)};
+    for (const LightSet& set : result.error_curve) sets.push_back(set.lights);
+    EXPECT_FALSE(sets.front().empty());
+    for (const auto& lights : sets) {
+      for (std::size_t i = 0; i < lights.size(); ++i) {
+        const Eigen::Vector3d at = to_eigen(lights[i].position);
+        EXPECT_GE(test::distance_to_surfaces(corner_.scene(), at), rule.surface_distance - 1e-6);
+        for (std::size_t j = 0; j < i; ++j) {
+          EXPECT_GE(double(length(lights[i].position - lights[j].position)), rule.light_distance - 1e-5);
+        }
+        EXPECT_TRUE(rule.boxes.empty() || box.contains(lights[i].position));
+      }
+    }
+  }
+}
+
 TEST_F(ConstrainedSolve, LightsStandInOneOfSeveralBoxes) {
   SolveProblem ruled = problem(target_);
   ruled.places.boxes = {{{0.2F, 2, 0.2F}, {1, 2.5F, 3}}, {{2.6F, 1, 2}, {3.6F, 2.6F, 3.5F}}};

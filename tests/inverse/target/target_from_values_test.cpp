@@ -168,7 +168,9 @@ TEST(CombineTargets, WeighsTheirValues) {
   Target a = target_from_values(board(), {}).target, b = a;
   a.illumination[0] = {1, 1, 1}, a.weight[0] = 1, a.standard_error[0] = 0.3F;
   b.illumination[0] = {5, 5, 5}, b.weight[0] = 3, b.standard_error[0] = 0.4F;
+  a.receivers.samples_moved = false, b.receivers.samples_moved = true;
   const Target sum = combine(a, b);
+  EXPECT_TRUE(sum.receivers.samples_moved);
   EXPECT_FLOAT_EQ(sum.illumination[0].x, 4);
   EXPECT_FLOAT_EQ(sum.weight[0], 4);
   EXPECT_FLOAT_EQ(sum.standard_error[0], std::hypot(0.25F * 0.3F, 0.75F * 0.4F));

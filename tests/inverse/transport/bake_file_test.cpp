@@ -1,5 +1,6 @@
 #include "inverse/transport/bake_file.h"
 
+#include <cstring>
 #include <limits>
 
 #include <sys/stat.h>
@@ -99,11 +100,26 @@ TEST_F(BakeFile, WritesThroughNothingThatHasItsName) {
   EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder_ / "baked.exr")));
   fs::create_hard_link(precious, unfinished);
-  EXPECT_EQ(read_file(bake_as({.shard = part, .resume = true}, "baked.exr")), expected);
+  EXPECT_THROW(bake_as({.shard = part, .resume = true}, "baked.exr"), Error) << "it is no cache";
+  EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);
   EXPECT_EQ(read_file(precious), "precious");
   ASSERT_EQ(::mkfifo(unfinished.c_str(), 0600), 0);
   EXPECT_THROW(bake_as({.shard = part, .resume = true}, "baked.exr"), Error);
   EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);
+}
+
+// What was baked by another version, or is no cache at all, may be of use to somebody.
+TEST_F(BakeFile, DoesNotGoOnWithWhatItCannotRead) {
+  const fs::path unfinished = unfinished_bake(folder_ / "other.exr");
+  std::string other = whole();
+  const std::size_t version = other.find("chiaro:format_version");
+  ASSERT_NE(version, std::string::npos);
+  other[version + std::strlen("chiaro:format_version") + 1 + sizeof("int") + 4] += 1;  // name, type, size, value
+  for (const std::string& bytes : {other, std::string("no cache at all")}) {
+    std::ofstream(unfinished, std::ios::binary) << bytes;
+    EXPECT_THROW(bake_as({.shard = {}, .resume = true}, "other.exr"), Error);
+    EXPECT_EQ(read_file(unfinished), bytes);
+  }
 }
 
 TEST_F(BakeFile, DoesNotGoOnWithAnother) {

@@ -103,6 +103,13 @@ TEST(Flip, OfSceneLinearFramesDoesNotDependOnTheirUnit) {
   EXPECT_NEAR(mean(hdr_flip(pair.noisy, pair.clean).error), before, 1e-5);
 }
 
+// Whose exposures are beyond floats.
+TEST(Flip, OfReferencesThatAreNearlyBlackIsThatOfLightAndDark) {
+  const Image white = constant(1, 1, 1), dim = constant(1e-40F, 1e-40F, 1e-40F);
+  EXPECT_GT(mean(hdr_flip(white, dim).error), 0.1);
+  EXPECT_EQ(mean(hdr_flip(dim, dim).error), 0);
+}
+
 TEST(Flip, OfBlackReferencesIsANumber) {
   const Image black = constant(0, 0, 0), grey = constant(1, 1, 1);
   EXPECT_EQ(mean(hdr_flip(black, black).error), 0);
