@@ -1,5 +1,5 @@
 // Whether solve keeps to constraints, whatever they are: random ones on four scenes in turn, checked by other means.
-//   constraints_benchmark --seed 1 --cases 1000
+//   constraints_benchmark --seed 1 --cases 1000 [--time-limit 0.001]
 // Receivers are few and light is direct or bounces once, so that a solve takes a fraction of a second.
 
 #include <algorithm>
@@ -40,6 +40,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::size_t cases = 1000;
   std::size_t first = 0;
+  double time_limit = 0;
   bool verbose = false;
 };
 
@@ -49,6 +50,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--seed", options.seed);
   app.add_option("--cases", options.cases);
   app.add_option("--first", options.first, "Number of the first case");
+  app.add_option("--time-limit", options.time_limit, "Of each solve, seconds, beside transport; 0: none");
   app.add_flag("--verbose", options.verbose, "What each case is and what it came to");
   parse_or_exit(app, argc, argv);
   return options;
@@ -67,8 +69,9 @@ SolveProblem problem_of(const Stage& stage, const SharedTarget& shared) {
   return problem;
 }
 
-SolveOptions options_of(const LightConstraints& constraints, SolveMethod method) {
+SolveOptions options_of(const LightConstraints& constraints, SolveMethod method, double time_limit = 0) {
   SolveOptions options;
+  options.time_limit = time_limit;
   options.method = method;
   options.important_vertices = 150;
   options.verification_samples = 4;
@@ -119,7 +122,7 @@ LightConstraints read_back(const LightConstraints& constraints) {
   }
 }
 
-SolveResult solve_case(const Setting& setting, const SharedTarget& shared, const ConstraintCase& c) {
+SolveResult solve_case(const Setting& setting, const SharedTarget& shared, const ConstraintCase& c, double time_limit) {
   const LightConstraints constraints = read_back(c.constraints);
   cli::require_known_to(c.method, constraints, {{}, "constraints.json"});
   SolveProblem problem = problem_of(*setting.stage, shared);
@@ -129,7 +132,7 @@ SolveResult solve_case(const Setting& setting, const SharedTarget& shared, const
   problem.places = cli::place_rules(scene, constraints);
   problem.intensities = cli::intensity_rules(constraints);
   problem.grid = around_places(problem.grid, scene, problem.places);
-  return solve(problem, options_of(constraints, c.method));
+  return solve(problem, options_of(constraints, c.method, time_limit));
 }
 
 // What an error must speak of, if it names a constraint that there is.
@@ -182,9 +185,19 @@ void tally_result(const Setting& setting, const SharedTarget& shared, const Cons
                   const SolveResult& result, Tally& tally) {
   ++tally.solves;
   tally.excess.push_back(result.relative_l2_cached - shared.free_error);
-  for (const Violation& v : violations(setting.stage->loaded.scene, c.constraints, c.scene_lights, result.lights)) {
-    ++tally.violations[v.kind];
-    print_case(c, "VIOLATION " + v.kind + ": " + v.what);
+  const auto check = [&](const LightConstraints& constraints, const std::vector<FoundLight>& lights) {
+    for (const Violation& v : violations(setting.stage->loaded.scene, constraints, c.scene_lights, lights)) {
+      ++tally.violations[v.kind];
+      print_case(c, "VIOLATION " + v.kind + ": " + v.what);
+    }
+  };
+  check(c.constraints, result.lights);
+  LightConstraints of_any_number = c.constraints;
+  of_any_number.lights.reset(), of_any_number.max_lights.reset();
+  for (const LightSet& set : result.error_curve) {
+    std::vector<FoundLight> lights;
+    for (const renderer::PointLight& light : set.lights) lights.push_back({light, 0, {}, {}});
+    check(of_any_number, lights);
   }
 }
 
@@ -205,11 +218,12 @@ void tally_error(const Setting& setting, const ConstraintCase& c, const std::str
   }
 }
 
-void run_case(const Setting& setting, const ConstraintCase& c, bool verbose, Tally& tally) {
+void run_case(const Setting& setting, const ConstraintCase& c, const Options& options, Tally& tally) {
   const SharedTarget& shared = setting.targets[c.number / kScenes % kTargets];
+  const bool verbose = options.verbose;
   if (verbose) print_case(c, "begins");
   try {
-    const SolveResult result = solve_case(setting, shared, c);
+    const SolveResult result = solve_case(setting, shared, c, options.time_limit);
     tally_result(setting, shared, c, result, tally);
     if (verbose) {
       print_case(c, fmt::format("{} lights, error {:.4f}, without constraints {:.4f}", result.lights.size(),
@@ -258,7 +272,7 @@ int main(int argc, char** argv) {
   const auto start = std::chrono::steady_clock::now();
   for (std::size_t number = options.first; number < options.first + options.cases; ++number) {
     const Setting& setting = settings[number % kScenes];
-    run_case(setting, random_case(*setting.stage, options.seed, number), options.verbose, tally);
+    run_case(setting, random_case(*setting.stage, options.seed, number), options, tally);
   }
   print_tally(tally, renderer::seconds_since(start));
   return tally.violations.empty() && tally.unclear == 0 ? 0 : 1;
