@@ -95,6 +95,23 @@ void add_attributes(renderer::Attributes& attributes, const renderer::Frame& fra
   }
 }
 
+bool is_too_dim(const Image& image, const renderer::ChannelTypes& types) {
+  constexpr float kLeastNormalHalf = 6.103515625e-5F;
+  float brightest = 0;
+  for (const char* const name : {"R", "G", "B"}) {
+    const int c = image.find_channel(name);
+    if (c < 0 || types[std::size_t(c)] != renderer::PixelType::kHalf) return false;
+    for (std::size_t i = std::size_t(c); i < image.pixels.size(); i += image.channel_names.size()) {
+      brightest = std::max(brightest, image.pixels[i]);
+    }
+  }
+  return brightest > 0 && brightest < kLeastNormalHalf;
+}
+
+HalfLosses losses_of(const Image& image, const renderer::ChannelTypes& types) {
+  return {renderer::pixels_beyond_half(image, types), is_too_dim(image, types)};
+}
+
 }  // namespace
 
 void add_frame_options(CLI::App& command, FrameOptions& options, const std::string& samples) {
@@ -182,23 +199,6 @@ FrameOrigin frame_origin(const LitScene& scene, const TransportOptions& transpor
           .environment = environment_among(scene.lights)};
 }
 
-bool is_too_dim(const Image& image, const renderer::ChannelTypes& types) {
-  constexpr float kLeastNormalHalf = 6.103515625e-5F;
-  float brightest = 0;
-  for (const char* const name : {"R", "G", "B"}) {
-    const int c = image.find_channel(name);
-    if (c < 0 || types[std::size_t(c)] != renderer::PixelType::kHalf) return false;
-    for (std::size_t i = std::size_t(c); i < image.pixels.size(); i += image.channel_names.size()) {
-      brightest = std::max(brightest, image.pixels[i]);
-    }
-  }
-  return brightest > 0 && brightest < kLeastNormalHalf;
-}
-
-HalfLosses losses_of(const Image& image, const renderer::ChannelTypes& types) {
-  return {renderer::pixels_beyond_half(image, types), is_too_dim(image, types)};
-}
-
 HalfLosses save_frame(const renderer::Frame& frame, const renderer::Camera& camera, const std::filesystem::path& path,
                       const FrameOrigin& origin, const FrameOptions& options) {
   const double aspect_ratio = double(frame.image.width) / frame.image.height;
@@ -223,8 +223,7 @@ void warn_of_frame(const renderer::Frame& frame, const HalfLosses& lost, const s
         "{}: {} left black", name,
         renderer::counted(frame.dropped_samples, "sample was not finite and is", "samples were not finite and are")));
   }
-  const std::size_t held = lost.held;
-  if (held > 0) {
+  if (const std::size_t held = lost.held; held > 0) {
     session.warn(fmt::format("{}: {} held at 65504 (--float keeps {})", name,
                              renderer::counted(held, "pixel is brighter than half floats hold, and is",
                                                "pixels are brighter than half floats hold, and are"),

@@ -1,8 +1,6 @@
 #include "inverse/solve/fit_in_place.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <set>
 
 #include <Eigen/QR>

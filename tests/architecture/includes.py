@@ -17,7 +17,7 @@ ALLOWED["cli"] = set(ALLOWED)
 IN_HEADERS = {"Eigen/Core", "sanitizer/tsan_interface.h"}
 # Headers for the .cpp files of one concept alone, which share a library's type.
 PRIVATE_HEADERS = {"inverse/target/json_field.h"}
-LIBRARY = re.compile(r'#include <([^>]*[/.][^>]*)>')
+LIBRARY = re.compile(r'#include [<"](?!(?:renderer|inverse|cli)/)([^>"]*[/.][^>"]*)[>"]')
 INCLUDE = re.compile(r'#include "((?:renderer|inverse|cli)/[^"]+)"')
 
 
