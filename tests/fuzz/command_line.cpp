@@ -27,13 +27,24 @@ void enter_folder() {
   input_file("strokes.json", kStrokes);
 }
 
-// Fewer receivers than by default, so that no input takes seconds.
+// Fewer receivers and pixels than by default, and searches that end early, so that no input takes seconds.
 void make_coarse(std::vector<std::string>& arguments) {
-  constexpr std::array kWithReceivers{"receivers", "illuminate", "paint", "bake"};
-  const auto is_edge = [](const std::string& argument) { return argument.rfind("--max-edge", 0) == 0; };
-  if (arguments.size() < 2 || std::any_of(arguments.begin(), arguments.end(), is_edge)) return;
-  if (std::find(kWithReceivers.begin(), kWithReceivers.end(), arguments[1]) == kWithReceivers.end()) return;
-  arguments.insert(arguments.end(), {"--max-edge", "0.2"});
+  struct Limit {
+    std::string_view option, value;
+    std::vector<std::string_view> commands;
+  };
+  static const std::array<Limit, 3> kLimits{{
+      {"--max-edge", "0.2", {"receivers", "illuminate", "paint", "bake", "run"}},
+      {"--width", "8", {"paint", "render", "run"}},
+      {"--time-limit", "0.5", {"solve", "run"}},
+  }};
+  if (arguments.size() < 2) return;
+  for (const Limit& limit : kLimits) {
+    if (std::find(limit.commands.begin(), limit.commands.end(), arguments[1]) == limit.commands.end()) continue;
+    const auto is_it = [&](const std::string& argument) { return argument.rfind(limit.option, 0) == 0; };
+    if (std::any_of(arguments.begin(), arguments.end(), is_it)) continue;
+    arguments.insert(arguments.end(), {std::string(limit.option), std::string(limit.value)});
+  }
 }
 
 std::vector<std::string> arguments_of(std::string_view input) {
