@@ -12,8 +12,10 @@ using renderer::SurfaceSample;
 
 namespace {
 
-constexpr int kHiddenPerGatherPoint = 8;      // samples that see no gather point, of which one becomes another …
-constexpr std::size_t kMostHiddenPoints = 2;  // … up to this part of those that there are
+constexpr std::size_t kHiddenPerGatherPoint = 8;  // samples that see no gather point, of which one becomes another …
+constexpr int kMostRounds = 6;                    // … again and again …
+constexpr std::size_t kFewHidden = 100;           // … until they are this part of all …
+constexpr std::size_t kMostHiddenPoints = 2;      // … or gather points so many times as many as at first came to them
 
 std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std::size_t count) {
   std::vector<SurfaceSample> chosen;
@@ -32,14 +34,12 @@ Cells find_cells(const std::vector<SurfaceSample>& all, const NearestGatherPoint
   return cells;
 }
 
-// Some of the samples that see none.
-std::vector<SurfaceSample> choose_hidden(const std::vector<SurfaceSample>& all, const Cells& cells,
-                                         std::size_t points) {
+std::vector<SurfaceSample> that_see_none(const std::vector<SurfaceSample>& all, const Cells& cells) {
   std::vector<SurfaceSample> hidden;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!cells[i]) hidden.push_back(all[i]);
   }
-  return every_nth(hidden, std::min(hidden.size() / kHiddenPerGatherPoint, points / kMostHiddenPoints));
+  return hidden;
 }
 
 // The same cells when these gather points have come to those that there were: of samples that none of them is nearer
@@ -87,8 +87,13 @@ void place_gather_points(GatherOperator& gather, const renderer::RayTracer& trac
   gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
   const renderer::Control quiet = control.without_progress();
   Cells cells = find_cells(all, *gather.nearest, quiet);
-  const std::vector<SurfaceSample> more = choose_hidden(all, cells, gather.points.size());
-  if (!more.empty()) {
+  const std::size_t most = (1 + kMostHiddenPoints) * gather.points.size();
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<SurfaceSample> hidden = that_see_none(all, cells);
+    if (round > 0 && hidden.size() < all.size() / kFewHidden) break;
+    const std::size_t room = std::min(gather.points.size() / 2, most - gather.points.size());
+    const std::vector<SurfaceSample> more = every_nth(hidden, std::min(hidden.size() / kHiddenPerGatherPoint, room));
+    if (more.empty()) break;
     gather.points.insert(gather.points.end(), more.begin(), more.end());
     gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
     find_cells_again(all, gather.points, more, *gather.nearest, spacing, quiet, cells);

@@ -83,8 +83,8 @@ std::vector<GatherHit> gather_hits(const RayTracer& tracer, const SurfaceSample&
   return hits;
 }
 
-// Each hit is as bright as the gather point that it sees; those that see none are as bright as the others, or where
-// there are no others as the nearest gather point.
+// Each hit is as bright as the gather point that it sees; those that see none are as bright as the others, or dark
+// where there are no others: what is hidden from all that lights reach.
 std::vector<SparseTransport::Entry> row_of(const std::vector<GatherHit>& hits, int rays,
                                            const NearestGatherPoint& nearest) {
   std::vector<SparseTransport::Entry> row;
@@ -97,8 +97,6 @@ std::vector<SparseTransport::Entry> row_of(const std::vector<GatherHit>& hits, i
     }
   }
   for (auto& entry : row) entry.weight += hidden_albedo / float(row.size());
-  if (!row.empty()) return row;
-  for (const GatherHit& hit : hits) row.push_back({nearest.find_nearest(hit.at), hit.albedo / float(rays)});
   return row;
 }
 
