@@ -7,6 +7,7 @@
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/insertion.h"
+#include "inverse/solve/missed_lights.h"
 #include "inverse/solve/refine_joint.h"
 #include "inverse/solve/split_lights.h"
 #include "inverse/transport/receivers.h"
@@ -98,16 +99,9 @@ std::vector<Candidate> worth_trying(const SettlingBench& some, const Candidate& 
   return candidates;
 }
 
-}  // namespace
-
-std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& all,
-                                                 const std::vector<Column>& indirect, const LightEstimates& lights,
-                                                 const FurtherLights& further) {
-  if (lights.empty()) return {};
-  const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
-  const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
-  const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows), all.stop};
-  Candidate now{lights, rows_of(indirect, rows), indirect};
+// With one light more, all of them led on.
+std::optional<LightEstimates> with_one_led(const SettlingBench& all, const SettlingBench& some, Candidate now,
+                                           const FurtherLights& further) {
   std::vector<Candidate> candidates = worth_trying(some, now, further);
   if (candidates.empty()) return {};
 
@@ -138,6 +132,46 @@ std::optional<LightEstimates> with_further_light(const renderer::RayTracer& trac
     best = std::move(more.lights);
   }
   return best;
+}
+
+// Where a search had a light in any of its sets, too.
+std::vector<Eigen::Vector3d> places_of_missed(const FurtherLights& further) {
+  std::vector<Eigen::Vector3d> places = further.places;
+  for (const LightEstimates& set : further.sets) {
+    for (const LightEstimate& light : set) places.push_back(light.position);
+  }
+  return places;
+}
+
+// With lights that were missed, the others where they are: as many as each clearly explain more.
+std::optional<LightEstimates> with_missed(const SettlingBench& all, const SettlingBench& some, const Candidate& before,
+                                          const FurtherLights& further, std::size_t most) {
+  std::optional<LightEstimates> best;
+  Candidate more = before;
+  Column brought = all.illumination(more.to_all, more.lights);
+  for (const LightEstimate& missed :
+       find_missed_lights(some, before.to_some, before.lights, places_of_missed(further), most)) {
+    more = with_one_more(more, missed);
+    Column with_it = all.illumination(more.to_all, more.lights);
+    if (!all.explains_more_to_most(with_it, brought, kGain, kSignificant)) break;
+    brought = std::move(with_it);
+    best = more.lights;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& all,
+                                                 const std::vector<Column>& indirect, const LightEstimates& lights,
+                                                 const FurtherLights& further, std::size_t most) {
+  if (lights.empty()) return {};
+  const std::vector<std::size_t> rows = evenly_spread(all.response.receiver_count(), kSome);
+  const DirectlyLit directly_lit(tracer, all.response, numerics::chosen_from(all.response.receivers(), rows));
+  const SettlingBench some{directly_lit.response(), rows_of(all.observations, rows), all.stop};
+  const Candidate now{lights, rows_of(indirect, rows), indirect};
+  std::optional<LightEstimates> led = with_one_led(all, some, now, further);
+  return led || all.stops() ? led : with_missed(all, some, now, further, most);
 }
 
 }  // namespace chiaro::inverse

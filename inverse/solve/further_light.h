@@ -13,10 +13,11 @@ struct FurtherLights {
 };
 
 // One light more: one was missed, or one of them has stood for two, which many receivers tell where a thousand could
-// not. Nothing where none clearly has. indirect[j]: what light j brings by bounces at 1 cd, and so do its parts, and
-// lights of another set that it is the nearest to; of one that was missed nothing is known.
+// not; or several, up to so many, that the others hide while all of them are missing. Nothing where none clearly has.
+// indirect[j]: what light j brings by bounces at 1 cd, and so do its parts, and lights of another set that it is the
+// nearest to; of those that were missed nothing is known.
 std::optional<LightEstimates> with_further_light(const renderer::RayTracer& tracer, const SettlingBench& bench,
                                                  const std::vector<Column>& indirect, const LightEstimates& lights,
-                                                 const FurtherLights& further);
+                                                 const FurtherLights& further, std::size_t most);
 
 }  // namespace chiaro::inverse

@@ -68,6 +68,7 @@ class Tries {
   // Those that do as well; left: what they bring.
   bool take(FreeLights& fewer, const Column& left) {
     if (bench_.explains_more(all_, left, kGain, kSignificant)) return false;
+    if (bench_.explains_more_to_most(all_, left, kGain, kSignificant)) return false;
     free_ = std::move(fewer);
     return true;
   }

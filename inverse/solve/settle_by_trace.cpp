@@ -358,7 +358,8 @@ class Settler {
     const bool may_add =
         options_.exact_lights == 0 && options_.earlier.empty() && int(lights.size()) < options_.max_lights;
     if (!may_add || added_lights_ == kMostFurther || out_of_time()) return false;
-    const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, further_);
+    const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, further_,
+                                         std::size_t(options_.max_lights) - lights.size());
     if (!more) return false;
     ++added_lights_;
     lights.resize(with_.held);

@@ -6,6 +6,8 @@
 namespace chiaro::inverse {
 namespace {
 
+constexpr double kFarBeyondNoise = 6;  // standard errors
+
 // So that none of the receivers counts more than others: in parts of its noise, which weights are by where it is known,
 // or of its brightness.
 Eigen::VectorXd comparable_residuals(const Observations& observations, const Column& illumination) {
@@ -35,6 +37,27 @@ bool SettlingBench::explains_more(const Column& one, const Column& other, double
   return of_other * of_other > (1 + gain) * error * error &&
          clearly_smaller(comparable_residuals(observations, other), comparable_residuals(observations, one),
                          standard_errors);
+}
+
+bool SettlingBench::explains_more_to_most(const Column& one, const Column& other, double gain,
+                                          double standard_errors) const {
+  if (!(observations.noise > 0)) return explains_more(one, other, gain, standard_errors);
+  const auto bounded = [&](const Column& illumination) {
+    const Eigen::ArrayXd residuals = comparable_residuals(observations, illumination);
+    return Eigen::VectorXd(residuals / (1 + (residuals / kFarBeyondNoise).square()).sqrt());
+  };
+  const Eigen::VectorXd residuals = bounded(one), of_other = bounded(other);
+  return of_other.squaredNorm() > (1 + gain) * residuals.squaredNorm() &&
+         clearly_smaller(of_other, residuals, standard_errors);
+}
+
+Observations SettlingBench::as_most_say(const Column& illumination) const {
+  if (!(observations.noise > 0)) return observations;
+  Observations weighted = observations;
+  const Eigen::ArrayXd residuals = comparable_residuals(observations, illumination);
+  weighted.sqrt_weight.array() /= 1 + (residuals / kFarBeyondNoise).square();
+  weighted.measure_target();
+  return weighted;
 }
 
 }  // namespace chiaro::inverse

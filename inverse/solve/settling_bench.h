@@ -23,6 +23,11 @@ struct SettlingBench {
   // Whether the first illumination leaves less than the other by this part of the squared error, and everywhere a
   // little rather than much at a few receivers: by so many standard errors of relative residuals.
   bool explains_more(const Column& one, const Column& other, double gain, double standard_errors) const;
+  // The same by what most receivers say: those that are far beyond noise, as where shadows are not where the target has
+  // them, say no more than that they are. Where noise is not known they say all.
+  bool explains_more_to_most(const Column& one, const Column& other, double gain, double standard_errors) const;
+  // Weighted as explains_more_to_most() counts them beside this illumination.
+  Observations as_most_say(const Column& illumination) const;
 };
 
 }  // namespace chiaro::inverse

@@ -23,7 +23,7 @@ class FurtherLight : public ::testing::Test {
   std::optional<LightEstimates> beside(const LightEstimates& start, const FurtherLights& further) const {
     const LightEstimates lights = refine_joint(bench_.response, bench_.observations, start).lights;
     const std::vector<Column> indirect(lights.size(), Column::Zero(kReceivers, 3));
-    return with_further_light(problem_.tracer(), bench_, indirect, lights, further);
+    return with_further_light(problem_.tracer(), bench_, indirect, lights, further, 2);
   }
   FurtherLights anywhere() const { return {problem_.response().places_near_grid_lights(), {}}; }
 

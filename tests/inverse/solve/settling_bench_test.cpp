@@ -39,5 +39,20 @@ TEST(SettlingBench, ReceiversWhoseNoiseIsKnownTellByThat) {
   EXPECT_FALSE(bench.explains_more(far, near, 0.01, 3));
 }
 
+// One is nearer to what is wanted nearly everywhere, and has a few in shadow that the target has lit.
+TEST(SettlingBench, AFewFarBeyondNoiseDoNotDecideForMost) {
+  const DirectProblem problem(known_lights(1));
+  const SettlingBench bench{problem.response(), few_bright_ones(1000)};
+  Column near = differing(bench.observations, 0.5, 0.5);
+  const Column far = differing(bench.observations, 1.5, 1.5);
+  for (const Eigen::Index i : {100, 350, 720}) near.row(i).array() += 200 * bench.observations.standard_error[i];
+  EXPECT_FALSE(bench.explains_more(near, far, 0.01, 3));
+  EXPECT_TRUE(bench.explains_more_to_most(near, far, 0.01, 3));
+  EXPECT_FALSE(bench.explains_more_to_most(far, near, 0.01, 3));
+  const Observations weighted = bench.as_most_say(near);
+  EXPECT_LT(weighted.sqrt_weight[350], 1e-2 * bench.observations.sqrt_weight[350]);
+  EXPECT_GT(weighted.sqrt_weight[351], 0.9 * bench.observations.sqrt_weight[351]);
+}
+
 }  // namespace
 }  // namespace chiaro::inverse
