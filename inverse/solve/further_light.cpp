@@ -20,6 +20,7 @@ constexpr std::size_t kMostSplits = 2;  // that are followed
 constexpr double kWorthTrying = 0.004;  // of the squared error, that it takes off where it is proposed …
 constexpr double kGain = 0.006;         // of the squared error: what a further light must explain …
 constexpr double kSignificant = 3.5;    // … and standard errors; one too many goes by the next trace
+constexpr std::size_t kMostMissed = 4;  // at a time
 constexpr JointRefinementOptions kDescent{.max_iterations = 20, .function_tolerance = 1e-4};
 
 // A settling's own steps (instrumental_fit.h) start near where they end; from farther away they may come to anywhere.
@@ -143,19 +144,22 @@ std::vector<Eigen::Vector3d> places_of_missed(const FurtherLights& further) {
   return places;
 }
 
-// With lights that were missed, the others where they are: as many as each clearly explain more.
+// With lights that were missed, the others where they are: those that each clearly explain more.
 std::optional<LightEstimates> with_missed(const SettlingBench& all, const SettlingBench& some, const Candidate& before,
                                           const FurtherLights& further, std::size_t most) {
+  if (most == 0) return {};
   std::optional<LightEstimates> best;
-  Candidate more = before;
-  Column brought = all.illumination(more.to_all, more.lights);
-  for (const LightEstimate& missed :
-       find_missed_lights(some, before.to_some, before.lights, places_of_missed(further), most)) {
-    more = with_one_more(more, missed);
+  Candidate now = before;
+  Column brought = all.illumination(now.to_all, now.lights);
+  for (const LightEstimate& missed : find_missed_lights(some, before.to_some, before.lights, places_of_missed(further),
+                                                        std::min(most, kMostMissed))) {
+    if (all.stops()) return {};
+    Candidate more = with_one_more(now, missed);
     Column with_it = all.illumination(more.to_all, more.lights);
-    if (!all.explains_more_to_most(with_it, brought, kGain, kSignificant)) break;
+    if (!all.explains_more_to_most(with_it, brought, kGain, kSignificant)) continue;
     brought = std::move(with_it);
-    best = more.lights;
+    now = std::move(more);
+    best = now.lights;
   }
   return best;
 }

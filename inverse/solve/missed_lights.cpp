@@ -60,6 +60,8 @@ Led lead(const SettlingBench& bench, const Observations& left, const Eigen::Vect
   return led;
 }
 
+double apart_in(const SettlingBench& bench) { return kApart * double(bench.response.grid().region.diagonal()); }
+
 bool is_apart(const LightEstimates& lights, const Eigen::Vector3d& place, double distance) {
   return std::all_of(lights.begin(), lights.end(),
                      [&](const LightEstimate& light) { return (light.position - place).norm() >= distance; });
@@ -71,9 +73,12 @@ std::optional<Led> lead_from(const SettlingBench& bench, const Observations& lef
                              const std::vector<Eigen::Vector3d>& places, LightEstimates others, double least) {
   if (!propose_directly_lit(bench.response, left, places, kBegin * least)) return std::nullopt;
   std::vector<Led> tried(places.size());
-  renderer::parallel_for(places.size(), [&](std::size_t k) { tried[k] = fitted_at(bench.response, left, places[k]); });
+  renderer::parallel_for(places.size(), [&](std::size_t k) {
+    if (!bench.stops()) tried[k] = fitted_at(bench.response, left, places[k]);
+  });
+  if (bench.stops()) return std::nullopt;
   std::stable_sort(tried.begin(), tried.end(), explains_more);
-  const double apart = kApart * double(bench.response.grid().region.diagonal());
+  const double apart = apart_in(bench);
   std::optional<Led> best;
   int led = 0;
   for (const Led& from : tried) {
@@ -96,13 +101,16 @@ Observations without(Observations left, const LightResponse& response, const Lig
   return left;
 }
 
-// Each beside the others, where these have come to.
-void lead_in_turn(const SettlingBench& bench, const Observations& left, LightEstimates& lights) {
+// Each beside the others, where these have come to, and apart from them and from those that stay.
+void lead_in_turn(const SettlingBench& bench, const Observations& left, const LightEstimates& staying,
+                  LightEstimates& lights) {
   for (int turn = 0; turn < kTurns; ++turn) {
-    for (std::size_t j = 0; j < lights.size(); ++j) {
+    for (std::size_t j = 0; j < lights.size() && !bench.stops(); ++j) {
       LightEstimates others = lights;
       others.erase(others.begin() + std::ptrdiff_t(j));
-      lights[j] = lead(bench, without(left, bench.response, others), lights[j].position).light;
+      const LightEstimate led = lead(bench, without(left, bench.response, others), lights[j].position).light;
+      others.insert(others.end(), staying.begin(), staying.end());
+      if (is_apart(others, led.position, apart_in(bench))) lights[j] = led;
     }
   }
 }
@@ -123,8 +131,9 @@ LightEstimates find_missed_lights(const SettlingBench& bench, const std::vector<
     const auto led = lead_from(bench, without(left, bench.response, missed), places, std::move(others), least);
     if (!led) break;
     missed.push_back(led->light);
-    if (missed.size() > 1) lead_in_turn(bench, left, missed);
+    if (missed.size() > 1) lead_in_turn(bench, left, lights, missed);
   }
+  std::erase_if(missed, is_dark);
   return missed;
 }
 

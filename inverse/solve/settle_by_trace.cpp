@@ -353,14 +353,15 @@ class Settler {
     descend(bench, free);
   }
 
-  // True: one was missing, and there is one more, on its way.
+  // True: one was missing, or several, and they are on their way. Beside lights that are held none is looked for that
+  // the others hide.
   bool add_further(const SettlingBench& bench, const FreeLights& free, LightEstimates& lights) {
     const bool may_add =
         options_.exact_lights == 0 && options_.earlier.empty() && int(lights.size()) < options_.max_lights;
     if (!may_add || added_lights_ == kMostFurther || out_of_time()) return false;
     const auto more = with_further_light(problem_.tracer, bench, free.indirect, free.now, further_,
-                                         std::size_t(options_.max_lights) - lights.size());
-    if (!more) return false;
+                                         with_.held > 0 ? 0 : std::size_t(options_.max_lights) - lights.size());
+    if (!more || out_of_time()) return false;
     ++added_lights_;
     lights.resize(with_.held);
     lights.insert(lights.end(), more->begin(), more->end());

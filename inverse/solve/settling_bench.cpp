@@ -6,7 +6,7 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr double kFarBeyondNoise = 6;  // standard errors
+constexpr double kFarBeyondNoise = 6;  // standard errors, of receivers of mean weight
 
 // So that none of the receivers counts more than others: in parts of its noise, which weights are by where it is known,
 // or of its brightness.

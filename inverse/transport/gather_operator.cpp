@@ -1,5 +1,6 @@
 #include "inverse/transport/gather_operator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -21,8 +22,9 @@ using renderer::Vec3f;
 
 namespace {
 
-constexpr int kPathLength = 4;      // surfaces that a path leaves gather points on
-constexpr float kNearField = 8.0F;  // cell radii
+constexpr int kPathLength = 4;            // surfaces that a path leaves gather points on
+constexpr float kNearField = 8.0F;        // cell radii
+constexpr std::size_t kEnoughToTell = 8;  // hits
 
 struct GatherHit {
   SurfaceSample at;
@@ -83,8 +85,9 @@ std::vector<GatherHit> gather_hits(const RayTracer& tracer, const SurfaceSample&
   return hits;
 }
 
-// Each hit is as bright as the gather point that it sees; those that see none are as bright as the others, or dark
-// where there are no others: what is hidden from all that lights reach.
+// Each hit is as bright as the gather point that it sees; those that see none are as bright as the others. Where there
+// are no others they are dark, being hidden from all that lights reach, or if they are too few to tell as bright as the
+// nearest gather point.
 std::vector<SparseTransport::Entry> row_of(const std::vector<GatherHit>& hits, int rays,
                                            const NearestGatherPoint& nearest) {
   std::vector<SparseTransport::Entry> row;
@@ -97,6 +100,8 @@ std::vector<SparseTransport::Entry> row_of(const std::vector<GatherHit>& hits, i
     }
   }
   for (auto& entry : row) entry.weight += hidden_albedo / float(row.size());
+  if (!row.empty() || hits.size() >= kEnoughToTell) return row;
+  for (const GatherHit& hit : hits) row.push_back({nearest.find_nearest(hit.at), hit.albedo / float(rays)});
   return row;
 }
 
@@ -205,7 +210,10 @@ void append_indirect(const RayTracer& tracer, const GatherOperator& gather, std:
 
 double bytes_to_make_gather_points(const GatherOptions& options) {
   constexpr double kBytesPerPath = 190;  // of up to kPathLength samples, twice
-  return kBytesPerPath * options.paths_per_point * options.points_per_sample * options.samples;
+  constexpr double kMost = 3;            // times as many gather points, where much is hidden
+  const double paths = kBytesPerPath * options.paths_per_point;
+  const double rows = 2 * kMost * options.rays_per_point * double(sizeof(SparseTransport::Entry));
+  return std::max(paths, paths / 2 + rows) * options.points_per_sample * options.samples;
 }
 
 GatherOperator make_gather_points(const RayTracer& tracer, std::span<const SurfaceSample> receivers,

@@ -43,7 +43,7 @@ struct GatherOperator {
 
 struct GatherOptions {
   int samples = 256;           // rays per receiver
-  int points_per_sample = 32;  // gather points = samples × this
+  int points_per_sample = 32;  // gather points = samples × this, and more where much is hidden
   int paths_per_point = 32;    // traced from the receivers, whose ends are samples of the cells
   int rays_per_point = 64;     // from gather points to each other
   int bounces = -1;

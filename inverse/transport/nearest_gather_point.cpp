@@ -10,7 +10,7 @@ using renderer::SurfaceSample;
 
 namespace {
 
-constexpr std::size_t kCandidates = 4;
+constexpr std::size_t kCandidates = 8;
 
 }  // namespace
 
@@ -19,8 +19,7 @@ NearestGatherPoint::NearestGatherPoint(const renderer::RayTracer& tracer, std::v
     : tracer_(tracer), tree_(std::move(points), spacing) {}
 
 std::optional<std::uint32_t> NearestGatherPoint::find_seen(const SurfaceSample& at) const {
-  std::uint32_t nearest = 0;
-  tree_.find_nearest(at, {&nearest, 1});
+  const std::uint32_t nearest = find_nearest(at);
   if (see_each_other(tracer_, at, tree_.samples()[nearest])) return nearest;
   std::array<std::uint32_t, kCandidates> found{};
   const std::size_t count = tree_.find_nearest(at, found);
@@ -28,6 +27,12 @@ std::optional<std::uint32_t> NearestGatherPoint::find_seen(const SurfaceSample& 
     if (see_each_other(tracer_, at, tree_.samples()[found[k]])) return found[k];
   }
   return std::nullopt;
+}
+
+std::uint32_t NearestGatherPoint::find_nearest(const SurfaceSample& at) const {
+  std::uint32_t nearest = 0;
+  tree_.find_nearest(at, {&nearest, 1});
+  return nearest;
 }
 
 }  // namespace chiaro::inverse

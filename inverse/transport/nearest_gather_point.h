@@ -17,6 +17,8 @@ class NearestGatherPoint {
 
   // Its index; nothing where none of the nearest is seen.
   std::optional<std::uint32_t> find_seen(const renderer::SurfaceSample& at) const;
+  // The nearest, seen or not.
+  std::uint32_t find_nearest(const renderer::SurfaceSample& at) const;
 
  private:
   const renderer::RayTracer& tracer_;
