@@ -93,14 +93,6 @@ std::optional<Led> lead_from(const SettlingBench& bench, const Observations& lef
   return best;
 }
 
-// Of what is left beside them.
-Observations without(Observations left, const LightResponse& response, const LightEstimates& lights) {
-  for (const LightEstimate& light : lights) {
-    left.wanted -= response.direct(light.position) * light.intensity.matrix().asDiagonal();
-  }
-  return left;
-}
-
 // Each beside the others, where these have come to, and apart from them and from those that stay.
 void lead_in_turn(const SettlingBench& bench, const Observations& left, const LightEstimates& staying,
                   LightEstimates& lights) {
@@ -108,7 +100,7 @@ void lead_in_turn(const SettlingBench& bench, const Observations& left, const Li
     for (std::size_t j = 0; j < lights.size() && !bench.stops(); ++j) {
       LightEstimates others = lights;
       others.erase(others.begin() + std::ptrdiff_t(j));
-      const LightEstimate led = lead(bench, without(left, bench.response, others), lights[j].position).light;
+      const LightEstimate led = lead(bench, less(left, bench.response, others), lights[j].position).light;
       others.insert(others.end(), staying.begin(), staying.end());
       if (is_apart(others, led.position, apart_in(bench))) lights[j] = led;
     }
@@ -128,7 +120,7 @@ LightEstimates find_missed_lights(const SettlingBench& bench, const std::vector<
   while (missed.size() < most && !bench.stops()) {
     LightEstimates others = lights;
     others.insert(others.end(), missed.begin(), missed.end());
-    const auto led = lead_from(bench, without(left, bench.response, missed), places, std::move(others), least);
+    const auto led = lead_from(bench, less(left, bench.response, missed), places, std::move(others), least);
     if (!led) break;
     missed.push_back(led->light);
     if (missed.size() > 1) lead_in_turn(bench, left, lights, missed);
