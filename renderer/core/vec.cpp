@@ -1,6 +1,15 @@
 #include "renderer/core/vec.h"
 
+#include <limits>
+
 namespace chiaro::renderer {
+
+Vec3f unit_or(Vec3f a, Vec3f otherwise) {
+  const float square = length_squared(a);
+  if (square >= std::numeric_limits<float>::min() && std::isfinite(square)) return normalize(a);
+  const double l = std::sqrt(squared_norm(a));
+  return l > 0 && std::isfinite(l) ? Vec3f{float(a.x / l), float(a.y / l), float(a.z / l)} : otherwise;
+}
 
 Mat4f operator*(const Mat4f& a, const Mat4f& b) {
   Mat4f product;
@@ -27,9 +36,7 @@ Vec3f transform_normal(const Mat4f& t, Vec3f n) {
   const Vec3f c0 = cross(t.column(1), t.column(2));
   const Vec3f c1 = cross(t.column(2), t.column(0));
   const Vec3f c2 = cross(t.column(0), t.column(1));
-  const Vec3f v = std::copysign(1.0F, dot(t.column(0), c0)) * (n.x * c0 + n.y * c1 + n.z * c2);
-  const float l = length(v);
-  return l > 0 && std::isfinite(l) ? v / l : Vec3f{};
+  return unit_or(std::copysign(1.0F, dot(t.column(0), c0)) * (n.x * c0 + n.y * c1 + n.z * c2), {});
 }
 
 Mat4f inverse_affine(const Mat4f& a) {

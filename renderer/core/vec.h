@@ -52,6 +52,8 @@ inline float length(Vec3f a) { return std::sqrt(dot(a, a)); }
 // The same square for values of light: those of very bright or very dim ones are no floats.
 inline double squared_norm(Vec3f a) { return double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z; }
 inline Vec3f normalize(Vec3f a) { return a / length(a); }
+// The same where floats have no square of its length; `otherwise` where it has no direction.
+Vec3f unit_or(Vec3f a, Vec3f otherwise);
 inline float max_component(Vec3f a) { return std::max({a.x, a.y, a.z}); }
 inline float min_component(Vec3f a) { return std::min({a.x, a.y, a.z}); }
 inline Vec3f min(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }

@@ -53,6 +53,20 @@ TEST(Vec, TransformedNormalOfTinyScalesIsUnitAndOfSingularOnesZero) {
   EXPECT_EQ(transform_normal(make_transform({}, {0, 0, 0, 1}, {0, 0, 1}), n), Vec3f{});
 }
 
+TEST(Vec, VectorsWhoseSquareIsNoFloatHaveADirection) {
+  for (const float length : {1.0F, 1e-21F, 1e-30F, 1e-38F, 1e-43F, 1e21F, 1e38F}) {
+    const Vec3f unit = unit_or(length * Vec3f{0.6F, 0, -0.8F}, {0, 1, 0});
+    const float tolerance = length < 1e-38F ? 0.05F : 1e-6F;  // such floats have few digits
+    EXPECT_NEAR(unit.x, 0.6F, tolerance) << length;
+    EXPECT_EQ(unit.y, 0) << length;
+    EXPECT_NEAR(unit.z, -0.8F, tolerance) << length;
+    EXPECT_NEAR(renderer::length(unit), 1, 1e-6F) << length;
+  }
+  EXPECT_EQ(unit_or({0, 0, 0}, {0, 1, 0}), (Vec3f{0, 1, 0}));
+  EXPECT_EQ(unit_or({NAN, 0, 0}, {0, 1, 0}), (Vec3f{0, 1, 0}));
+  EXPECT_EQ(unit_or({0, INFINITY, 0}, {0, 1, 0}), (Vec3f{0, 1, 0}));
+}
+
 TEST(Vec, InverseUndoesTheMatrix) {
   for (std::uint32_t number = 0; number < 200; ++number) {
     const Mat4f m = random_affine(number, number % 2 == 0);

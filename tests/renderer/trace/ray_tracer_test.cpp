@@ -110,6 +110,26 @@ TEST(RayTracer, NormalsPointOutOfASolidHoweverItIsPlaced) {
   }
 }
 
+// Once their normal was infinite, and so was where a ray went on behind them.
+TEST(RayTracer, TrianglesWhoseAreaIsHardlyAFloatHaveANormal) {
+  for (const float width : {1e-25F, 1e-38F, 8e-39F, 1e-43F}) {
+    for (const bool instanced : {false, true}) {
+      Scene scene;
+      add_mesh(scene, rectangle({0, 0, 0}, {width, 0, 0}, {0, 0, 2}), lambert({0.5F, 0.5F, 0.5F}), "sliver");
+      if (instanced) scene.instances.push_back({"again", 0, make_transform({5, 0, 0}, {0, 0, 0, 1}, {1, 1, 1})});
+      const RayTracer tracer(scene);
+      for (const Vec3f direction :
+           {Vec3f{0, -1, 0}, normalize({0.88F, 0.31F, 0.36F}), normalize({0.3F, -0.8F, 0.2F})}) {
+        const Ray ray{-0.5F * direction + Vec3f{0, 0, 1}, direction, 0, kInfinity, 0};
+        const auto hit = tracer.intersect(ray);
+        if (!hit) continue;  // as if it were not there
+        EXPECT_NEAR(length(hit->geometric_normal), 1, 1e-5F) << width;
+        EXPECT_TRUE(is_finite(point_behind(make_surface_point(scene, ray, *hit)))) << width;
+      }
+    }
+  }
+}
+
 TEST(RayTracer, NearAndFarAreKept) {
   Scene scene;
   add_mesh(scene, rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), lambert({1, 1, 1}), "plane");
