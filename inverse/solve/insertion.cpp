@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "inverse/numerics/chosen_from.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -13,6 +14,7 @@ constexpr std::size_t kMostInsertions = 3;
 constexpr std::size_t kDarkest = 16;      // receivers in front of which a light is tried …
 constexpr std::size_t kTraced = 12;       // … of each distance, those that explain most if nothing is in the way, …
 constexpr std::size_t kTracedOfAll = 48;  // the same of all places there are
+constexpr double kHidden = 1e-4;          // of the mean brightness, or less: hardly any light gets there
 constexpr float kFarthest = 0.05F;        // … from this part of the region's diagonal …
 constexpr float kNearest = 0.0005F;       // … down to this one …
 constexpr float kStep = 2.0F;             // … in these steps
@@ -31,6 +33,15 @@ class IntensityGain {
  public:
   explicit IntensityGain(const Observations& observations)
       : weight_(observations.sqrt_weight.cwiseAbs2()), pull_(weight_.asDiagonal() * observations.wanted) {}
+
+  // By the receivers that any light gets to. Absent: it gets to all.
+  static std::optional<IntensityGain> by_lit(Observations observations) {
+    const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
+    const auto lit = brightness > kHidden * brightness.mean();
+    if (lit.all()) return std::nullopt;
+    observations.sqrt_weight = lit.select(observations.sqrt_weight.array(), 0).matrix().eval();
+    return IntensityGain(observations);
+  }
 
   double fit(const Column& column, LightEstimate& light) const {
     Eigen::Array3d along, squared;
@@ -80,19 +91,43 @@ std::vector<std::size_t> darkest_receivers(const Observations& residual) {
   return darkest;
 }
 
-// Those from which most is explained if nothing is in the way, so many at most.
-std::vector<Eigen::Vector3d> most_promising(const LightResponse& response, const IntensityGain& explains,
-                                            const std::vector<Eigen::Vector3d>& places, std::size_t most) {
-  std::vector<std::pair<double, std::size_t>> gain(places.size());
-  renderer::parallel_for(places.size(), [&](std::size_t j) {
-    gain[j] = {-explains.of_grey(response.unoccluded(places[j])), j};
-  });
-  const std::size_t count = std::min(most, places.size());
+// The best of these places by what a light there explains if nothing is in the way, best first.
+std::vector<std::size_t> best_unoccluded(const IntensityGain& explains, const std::vector<Eigen::VectorXd>& unoccluded,
+                                         std::size_t most) {
+  std::vector<std::pair<double, std::size_t>> gain;
+  for (std::size_t j = 0; j < unoccluded.size(); ++j) gain.emplace_back(-explains.of_grey(unoccluded[j]), j);
+  const std::size_t count = std::min(most, gain.size());
   std::partial_sort(gain.begin(), gain.begin() + std::ptrdiff_t(count), gain.end());
-  std::vector<Eigen::Vector3d> promising;
-  for (std::size_t k = 0; k < count; ++k) promising.push_back(places[gain[k].second]);
-  return promising;
+  std::vector<std::size_t> best;
+  for (std::size_t k = 0; k < count; ++k) best.push_back(gain[k].second);
+  return best;
 }
+
+// Where lights are tried: at so many places at most.
+class MostPromising {
+ public:
+  MostPromising(const LightResponse& response, const Observations& residual)
+      : response_(response), by_all_(residual), by_lit_(IntensityGain::by_lit(residual)) {}
+
+  // A receiver that no light gets to would be bright if nothing were in the way, and tell against all places near it:
+  // half of the places are chosen without those.
+  std::vector<Eigen::Vector3d> of(const std::vector<Eigen::Vector3d>& places, std::size_t most) const {
+    std::vector<Eigen::VectorXd> unoccluded(places.size());
+    renderer::parallel_for(places.size(), [&](std::size_t j) { unoccluded[j] = response_.unoccluded(places[j]); });
+    std::vector<std::size_t> chosen;
+    if (by_lit_) chosen = best_unoccluded(*by_lit_, unoccluded, most / 2);
+    for (const std::size_t j : best_unoccluded(by_all_, unoccluded, most)) {
+      const bool is_new = std::find(chosen.begin(), chosen.end(), j) == chosen.end();
+      if (is_new && chosen.size() < most) chosen.push_back(j);
+    }
+    return numerics::chosen_from(places, chosen);
+  }
+
+ private:
+  const LightResponse& response_;
+  IntensityGain by_all_;
+  std::optional<IntensityGain> by_lit_;
+};
 
 std::optional<Insertion> best_by_direct_light(const LightResponse& response, const IntensityGain& explains,
                                               const std::vector<Eigen::Vector3d>& places) {
@@ -103,8 +138,8 @@ std::optional<Insertion> best_by_direct_light(const LightResponse& response, con
 
 std::optional<LightEstimate> propose_directly_lit(const LightResponse& response, const Observations& residual,
                                                   const std::vector<Eigen::Vector3d>& places, double least_gain) {
-  const IntensityGain explains(residual);
-  const auto best = best_by_direct_light(response, explains, most_promising(response, explains, places, kTracedOfAll));
+  const auto best = best_by_direct_light(response, IntensityGain(residual),
+                                         MostPromising(response, residual).of(places, kTracedOfAll));
   if (!best || best->gain <= least_gain) return std::nullopt;
   return best->light;
 }
@@ -131,13 +166,13 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
                                   const LightEstimates& lights) {
   const Observations residual = less(observations, response, lights);
   const IntensityGain explains(residual);
+  const MostPromising promising(response, residual);
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
   std::vector<Insertion> insertions;
   for (float t = kFarthest; t > kNearest; t /= kStep) {
-    const std::vector<Eigen::Vector3d> places = most_promising(
-        response, explains, places_in_front(response, darkest, t * response.grid().region.diagonal()), kTraced);
+    const auto places = places_in_front(response, darkest, t * response.grid().region.diagonal());
     // The grid's indirect light says nothing about a place inside a fixture.
-    auto best = best_by_direct_light(response, explains, places);
+    auto best = best_by_direct_light(response, explains, promising.of(places, kTraced));
     if (!best) continue;
     best->light.correction = -response.interpolated_indirect(best->light.position);
     insertions.push_back(std::move(*best));
