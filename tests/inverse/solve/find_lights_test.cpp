@@ -253,6 +253,31 @@ TEST(Insertion, ProposesTheLightThatIsMissing) {
   EXPECT_LT((proposed.front().position - known[1].position).norm(), 1.8 * spacing_of(problem));
 }
 
+// Lit is the floor of a shaft alone, whose walls look outwards, and hide the light from others right behind them, which
+// would be bright without them.
+TEST(Insertion, ProposesALightThatWallsHideFromMostReceivers) {
+  renderer::Scene scene;
+  const auto add_walls = [&](renderer::Vec3f corner, renderer::Vec3f size, int n, bool outwards) {
+    renderer::Mesh walls = test::room(size, n);
+    for (renderer::Vec3f& p : walls.positions) p += corner;
+    for (renderer::Vec3f& normal : walls.normals) normal = outwards ? -normal : normal;
+    if (outwards) {
+      for (renderer::Triangle& t : walls.triangles) std::swap(t[1], t[2]);
+    }
+    test::add_mesh(scene, std::move(walls), test::lambert({0.5F, 0.5F, 0.5F}), "walls");
+  };
+  add_walls({0, 0, 0}, {6, 5, 6}, 1, false);
+  add_walls({2.8F, 1, 2.8F}, {0.4F, 1.4F, 0.4F}, 1, true);
+  add_walls({2.79F, 0.99F, 2.79F}, {0.42F, 1.42F, 0.42F}, 24, false);
+  test::add_mesh(scene, test::rectangle({2.85F, 1.01F, 2.85F}, {0, 0, 0.3F}, {0.3F, 0, 0}, 6),
+                 test::lambert({0.5F, 0.5F, 0.5F}), "floor");
+  const LightEstimates known{{{3, 1.5, 3}, {3, 2, 1}}};
+  const DirectProblem problem(known, 3000, scene);
+  const LightEstimates proposed = propose_insertions(problem.response(), problem.observations(), {});
+  ASSERT_FALSE(proposed.empty());
+  EXPECT_LT((proposed.front().position - known[0].position).norm(), 0.1);
+}
+
 TEST(SplitLights, PartsTwoLightsThatWereSeenAsOne) {
   const LightEstimates known{{{1.7, 1.5, 2}, {20, 12, 8}}, {{2.3, 1.6, 2.1}, {10, 18, 20}}};
   const DirectProblem problem(known);
