@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/carry_along.h"
 #include "inverse/solve/cross_shadow_edges.h"
-#include "inverse/solve/directly_lit.h"
 #include "inverse/solve/error_curve.h"
 #include "inverse/solve/fill_up_lights.h"
 #include "inverse/solve/further_light.h"
-#include "inverse/solve/instrumental_fit.h"
 #include "inverse/solve/needless_lights.h"
-#include "inverse/solve/observe_target.h"
-#include "inverse/transport/eigen_vectors.h"
+#include "inverse/solve/settling.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -25,8 +21,7 @@ constexpr std::size_t kMany = 30000;   // receivers at most …
 constexpr std::size_t kSome = 8000;    // … and while lights are on their way, …
 constexpr std::size_t kFarMore = 4;    // … which alone are traced then where there are so many times as many, …
 constexpr double kDraftPaths = 5e5;    // … by so many paths of all together
-constexpr double kNear = 1e-3;         // of the region's diagonal: of all light, that by bounces hardly changes …
-constexpr double kVeryNear = 0.1;      // … or, so many times as far, not at all …
+constexpr double kVeryNear = 0.1;      // times as far as light by bounces hardly changes: it does not at all …
 constexpr double kCarried = 10;        // … or, so many times as far, can be carried along
 constexpr double kAstray = 1.1;        // of the error as found, beyond noise …
 constexpr double kNoiseOfNoise = 0.1;  // … and of its squared noise: that of lights that noise has not led
@@ -67,49 +62,11 @@ bool is_worth_it(const SolveOptions& options, std::size_t receivers, std::size_t
   return precise && lights <= kMostLightsWithIntervals;
 }
 
-std::vector<Column> direct_columns(const DirectlyLit& receivers, const LightEstimates& lights) {
-  return evaluate_columns(receivers.response(), lights, Evaluation::kTracedVisibility);
-}
-
 // By direct light, which has no noise that would choose what it brightens. Empty where all receivers are taken anyway.
 Eigen::VectorXd brightness_of(const DirectlyLit& receivers, const LightEstimates& lights) {
   const std::size_t count = receivers.response().receiver_count();
   if (count <= kSome) return {};
   return total_illumination(direct_columns(receivers, lights), lights, Eigen::Index(count)).rowwise().norm();
-}
-
-// The problem, and the receivers that lights are settled by.
-struct Settling {
-  const Target& target;
-  const DirectlyLit& all;  // receivers
-  ReceiverDraw draw;
-  DirectlyLit some;  // receivers: those drawn
-  std::size_t held;  // of the first lights, that stay
-  double near;       // metres
-
-  Settling(const SolveProblem& problem, const DirectlyLit& all_receivers, const Eigen::VectorXd& brightness,
-           std::size_t receivers, std::size_t held_lights)
-      : target(problem.target),
-        all(all_receivers),
-        draw(draw_brightest_and_evenly(target, brightness, receivers)),
-        some(problem.tracer, all.response(), numerics::chosen_from(target.receivers.samples, draw.chosen)),
-        held(held_lights),
-        near(kNear * double(all.response().grid().region.diagonal())) {}
-};
-
-// drawn: of the receivers that lights are settled by.
-FreeLights free_lights(const Settling& with, const LightEstimates& lights, const FreshTrace& drawn) {
-  FreeLights free;
-  free.traced.assign(lights.begin() + std::ptrdiff_t(with.held), lights.end());
-  free.now = free.traced;
-  const std::vector<Column> direct = direct_columns(with.some, free.now);
-  for (std::size_t j = 0; j < free.now.size(); ++j) {
-    free.brought.push_back(column_of(drawn.of_light[with.held + j]));
-    free.indirect_traced.push_back(unity_indirect(free.brought[j], direct[j], free.now[j].intensity));
-    free.number.push_back(with.held + j);
-  }
-  free.indirect = free.indirect_traced;
-  return free;
 }
 
 // Those that share a place as one.
@@ -125,70 +82,6 @@ LightEstimates each_place_once(const LightEstimates& lights) {
     }
   }
   return places;
-}
-
-// What the receivers drawn want of the free lights.
-Observations wanted_of(const Settling& with, const FreeLights& free, const FreshTrace& drawn) {
-  Observations observations = in_mean_weights(observe_target(with.target, with.draw, drawn.all.value));
-  for (const Column& brought : free.brought) observations.wanted += brought;
-  if (with.held > 0) return with_capped_weights(observations);
-  if (with.target.standard_error.empty()) return observations;
-  return weighted_by_noise(with_noise(std::move(observations), with.target, with.draw.chosen), 0);
-}
-
-// Light by bounces at all receivers, at 1 cd.
-std::vector<Column> unity_indirect_of_all(const Settling& with, const LightEstimates& lights,
-                                          const std::vector<const std::vector<Vec3f>*>& traced) {
-  std::vector<Column> indirect = direct_columns(with.all, lights);
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    indirect[j] = unity_indirect(column_of(*traced[j]), indirect[j], lights[j].intensity);
-  }
-  return indirect;
-}
-
-// Light by bounces becomes that of where the lights are now: by the difference of two traces of few but the same paths,
-// whose noise is mostly the same as well. before, now: first parts of the trace, of all lights.
-void carry_along(const Settling& with, const FreshTrace& before, const FreshTrace& now, FreeLights& free) {
-  std::vector<const std::vector<Vec3f>*> traced_before, traced_now;
-  for (std::size_t j = 0; j < free.now.size(); ++j) {
-    traced_before.push_back(&before.of_light[free.number[j]]);
-    traced_now.push_back(&now.of_light[with.held + j]);
-  }
-  const std::vector<Column> there = unity_indirect_of_all(with, free.traced, traced_before);
-  free.carried = unity_indirect_of_all(with, free.now, traced_now);
-  for (std::size_t j = 0; j < free.now.size(); ++j) {
-    Column& change = free.carried[j];
-    for (int c = 0; c < 3; ++c) {
-      // Of a channel that is dark in one of them nothing is known.
-      const bool shines = free.traced[j].intensity[c] > 0 && free.now[j].intensity[c] > 0;
-      change.col(c) = shines ? Eigen::VectorXd(change.col(c) - there[j].col(c)) : Eigen::VectorXd::Zero(change.rows());
-    }
-    free.indirect[j] = free.indirect_traced[j] + change(with.draw.chosen, Eigen::all);
-  }
-}
-
-// The illumination that was traced becomes that of the lights where they are now: none is negative by what was taken
-// off.
-void follow(const Settling& with, const FreeLights& free, FreshTrace& traced) {
-  std::vector<Vec3f>& illumination = traced.all.value;
-  Column change = Column::Zero(Eigen::Index(illumination.size()), 3);
-  for (std::size_t j = with.held; j < traced.of_light.size(); ++j) change -= column_of(traced.of_light[j]);
-  const std::vector<Column> before = direct_columns(with.all, free.traced), now = direct_columns(with.all, free.now);
-  for (std::size_t j = 0; j < free.now.size(); ++j) {
-    const Column brought = column_of(traced.of_light[free.number[j]]);
-    Column indirect = unity_indirect(brought, before[j], free.traced[j].intensity);
-    if (!free.carried.empty()) indirect += free.carried[j];
-    change += (now[j] + indirect) * free.now[j].intensity.matrix().asDiagonal();
-  }
-  for (std::size_t i = 0; i < illumination.size(); ++i) {
-    illumination[i] = max(illumination[i] + to_vec3f(change.row(Eigen::Index(i)).transpose()), Vec3f{});
-  }
-}
-
-LightEstimates joined(const Settling& with, const LightEstimates& lights, const FreeLights& free) {
-  LightEstimates all(lights.begin(), lights.begin() + std::ptrdiff_t(with.held));
-  all.insert(all.end(), free.now.begin(), free.now.end());
-  return all;
 }
 
 // A light whose indirect light stayed behind while it moved is led past its place in one round and back in the next.
