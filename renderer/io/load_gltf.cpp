@@ -1,5 +1,6 @@
 #include "renderer/io/load_gltf.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -20,6 +21,10 @@
 
 namespace chiaro::renderer {
 namespace {
+
+// Between neighbours among floats, of the scene's size: …
+constexpr float kCoarse = 1e-4F;     // … light is off by a percent …
+constexpr float kTooCoarse = 5e-3F;  // … or by more than anybody wants
 
 std::string instance_name(const PlacedNode& node, const Mesh& mesh) {
   if (!node.name.empty()) return node.name;
@@ -80,6 +85,20 @@ void check_size(const GltfDocument& document, const Scene& scene) {
        fmt::format("{:g} m or more: glTF's unit is the metre", kLeastScene));
 }
 
+// Floats are the farther apart the farther from the origin they are.
+void check_spacing(const GltfDocument& document, const Scene& scene, std::vector<std::string>& warnings) {
+  if (scene.instances.empty()) return;
+  const Box3f box = bounds(scene);
+  const float farthest = max_component(max(abs(box.min), abs(box.max))), across = box.diagonal();
+  const float spacing = std::nextafter(farthest, kInfinity) - farthest;
+  if (spacing <= kCoarse * across) return;
+  const std::string where =
+      fmt::format("surfaces {:.3g} m across lie {:.3g} m from the origin, where positions are {:.2g} m apart", across,
+                  farthest, spacing);
+  if (spacing > kTooCoarse * across) fail(document, "scene", where, "a scene nearer to the origin");
+  warnings.push_back(where + ": light may be off by a percent; move the scene nearer to it");
+}
+
 void warn(std::vector<std::string>& warnings, std::size_t count, const char* one, const char* many) {
   if (count > 0) warnings.push_back(counted(count, one, many));
 }
@@ -124,6 +143,7 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   for (std::size_t n = 0; n < nodes.size(); ++n)
     left_out += add_instances(document, nodes[n], meshes.of_node[n], scene);
   check_size(document, scene);
+  check_spacing(document, scene, loaded.warnings);
   warn_of_repairs(meshes, left_out, loaded.warnings);
   const std::vector<std::string> missing = warnings_of_missing_coordinates(scene);
   loaded.warnings.insert(loaded.warnings.end(), missing.begin(), missing.end());

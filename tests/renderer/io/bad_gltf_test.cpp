@@ -160,6 +160,12 @@ const BadCase kBadCases[] = {
        g.root["nodes"][0]["scale"] = {1e-6, 1e-6, 1e-6};
      },
      "scene: all surfaces together are 1.41421e-06 m across (expected 1e-05 m or more"},
+    {"SceneTooFarAwayForFloats",
+     [](GltfBuilder& g) {
+       g.root["nodes"][0]["translation"] = {1e6, 0, 0};
+     },
+     "scene: surfaces 1.41 m across lie 1e+06 m from the origin, where positions are 0.062 m apart (expected a scene "
+     "nearer to the origin"},
     {"CameraBeyondTheWorld",
      [](GltfBuilder& g) {
        g.root["cameras"] = J::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
