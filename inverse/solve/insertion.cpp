@@ -14,10 +14,10 @@ constexpr std::size_t kMostInsertions = 3;
 constexpr std::size_t kDarkest = 16;      // receivers in front of which a light is tried …
 constexpr std::size_t kTraced = 12;       // … of each distance, those that explain most if nothing is in the way, …
 constexpr std::size_t kTracedOfAll = 48;  // the same of all places there are
-constexpr double kHidden = 1e-4;          // of the mean brightness, or less: hardly any light gets there
 constexpr float kFarthest = 0.05F;        // … from this part of the region's diagonal …
 constexpr float kNearest = 0.0005F;       // … down to this one …
 constexpr float kStep = 2.0F;             // … in these steps
+constexpr double kHidden = 1e-4;          // of the mean brightness, or less: hardly any light gets there
 // Along the normal, and around it at 30 and at 60 degrees.
 constexpr Vec3f kDirections[] = {{0, 0, 1},           {.5F, 0, .87F},    {-.25F, .43F, .87F}, {-.25F, -.43F, .87F},
                                  {.87F, 0, .5F},      {.43F, .75F, .5F}, {-.43F, .75F, .5F},  {-.87F, 0, .5F},
@@ -91,32 +91,34 @@ std::vector<std::size_t> darkest_receivers(const Observations& residual) {
   return darkest;
 }
 
-// The best of these places by what a light there explains if nothing is in the way, best first.
-std::vector<std::size_t> best_unoccluded(const IntensityGain& explains, const std::vector<Eigen::VectorXd>& unoccluded,
-                                         std::size_t most) {
-  std::vector<std::pair<double, std::size_t>> gain;
-  for (std::size_t j = 0; j < unoccluded.size(); ++j) gain.emplace_back(-explains.of_grey(unoccluded[j]), j);
-  const std::size_t count = std::min(most, gain.size());
-  std::partial_sort(gain.begin(), gain.begin() + std::ptrdiff_t(count), gain.end());
-  std::vector<std::size_t> best;
-  for (std::size_t k = 0; k < count; ++k) best.push_back(gain[k].second);
-  return best;
+// The places of the greatest gains, best first.
+std::vector<std::size_t> greatest(const std::vector<double>& gains, std::size_t most) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t j = 0; j < gains.size(); ++j) order.emplace_back(-gains[j], j);
+  const std::size_t count = std::min(most, order.size());
+  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end());
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < count; ++k) places.push_back(order[k].second);
+  return places;
 }
 
-// Where lights are tried: at so many places at most.
+// Of many places those where a light explains most if nothing is in the way.
 class MostPromising {
  public:
   MostPromising(const LightResponse& response, const Observations& residual)
       : response_(response), by_all_(residual), by_lit_(IntensityGain::by_lit(residual)) {}
 
-  // A receiver that no light gets to would be bright if nothing were in the way, and tell against all places near it:
-  // half of the places are chosen without those.
+  // So many at most. A receiver that no light gets to would be bright if nothing were in the way, and tell against all
+  // places near it: half of the places are chosen without those.
   std::vector<Eigen::Vector3d> of(const std::vector<Eigen::Vector3d>& places, std::size_t most) const {
-    std::vector<Eigen::VectorXd> unoccluded(places.size());
-    renderer::parallel_for(places.size(), [&](std::size_t j) { unoccluded[j] = response_.unoccluded(places[j]); });
-    std::vector<std::size_t> chosen;
-    if (by_lit_) chosen = best_unoccluded(*by_lit_, unoccluded, most / 2);
-    for (const std::size_t j : best_unoccluded(by_all_, unoccluded, most)) {
+    std::vector<double> of_all(places.size()), of_lit(by_lit_ ? places.size() : 0);
+    renderer::parallel_for(places.size(), [&](std::size_t j) {
+      const Eigen::VectorXd column = response_.unoccluded(places[j]);
+      of_all[j] = by_all_.of_grey(column);
+      if (by_lit_) of_lit[j] = by_lit_->of_grey(column);
+    });
+    std::vector<std::size_t> chosen = greatest(of_lit, most / 2);
+    for (const std::size_t j : greatest(of_all, most)) {
       const bool is_new = std::find(chosen.begin(), chosen.end(), j) == chosen.end();
       if (is_new && chosen.size() < most) chosen.push_back(j);
     }
@@ -126,7 +128,7 @@ class MostPromising {
  private:
   const LightResponse& response_;
   IntensityGain by_all_;
-  std::optional<IntensityGain> by_lit_;
+  std::optional<IntensityGain> by_lit_;  // absent: light gets to all
 };
 
 std::optional<Insertion> best_by_direct_light(const LightResponse& response, const IntensityGain& explains,

@@ -1,7 +1,5 @@
 #include "inverse/solve/settling.h"
 
-#include <algorithm>
-
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/solve/instrumental_fit.h"
 #include "inverse/transport/eigen_vectors.h"

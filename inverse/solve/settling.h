@@ -3,8 +3,8 @@
 
 #include "inverse/solve/directly_lit.h"
 #include "inverse/solve/free_lights.h"
-#include "inverse/solve/lights_by_trace.h"
 #include "inverse/solve/observe_target.h"
+#include "inverse/solve/traced_light.h"
 
 namespace chiaro::inverse {
 
@@ -17,7 +17,7 @@ struct Settling {
   std::size_t held;  // of the first lights, that stay
   double near;       // metres: of all light, that by bounces hardly changes
 
-  // brightness: of each receiver, which the brightest are drawn by; empty: all are drawn.
+  // brightness: of each receiver, by which the brightest are drawn; may be empty where all are.
   Settling(const SolveProblem& problem, const DirectlyLit& all_receivers, const Eigen::VectorXd& brightness,
            std::size_t receivers, std::size_t held_lights);
 };

@@ -23,8 +23,8 @@ namespace chiaro::renderer {
 namespace {
 
 // Between neighbours among floats, of the scene's size: …
-constexpr float kCoarse = 1e-4F;     // … light is off by a percent …
-constexpr float kTooCoarse = 5e-3F;  // … or by more than anybody wants
+constexpr float kCoarse = 1e-4F;     // … light is off by a tenth of a percent or more …
+constexpr float kTooCoarse = 5e-3F;  // … or by more than some
 
 std::string instance_name(const PlacedNode& node, const Mesh& mesh) {
   if (!node.name.empty()) return node.name;
@@ -96,7 +96,7 @@ void check_spacing(const GltfDocument& document, const Scene& scene, std::vector
       fmt::format("surfaces {:.3g} m across lie {:.3g} m from the origin, where positions are {:.2g} m apart", across,
                   farthest, spacing);
   if (spacing > kTooCoarse * across) fail(document, "scene", where, "a scene nearer to the origin");
-  warnings.push_back(where + ": light may be off by a percent; move the scene nearer to it");
+  warnings.push_back(where + ": light may be off by some percent; move the scene nearer to it");
 }
 
 void warn(std::vector<std::string>& warnings, std::size_t count, const char* one, const char* many) {
