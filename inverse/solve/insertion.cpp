@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/numerics/indices_of_greatest.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -79,27 +80,12 @@ std::optional<Insertion> best_insertion(const IntensityGain& explains, const std
 }
 
 std::vector<std::size_t> darkest_receivers(const Observations& residual) {
-  std::vector<std::pair<double, std::size_t>> lack;
+  std::vector<double> lack;
   for (Eigen::Index i = 0; i < residual.wanted.rows(); ++i) {
     const double painted = residual.sqrt_weight[i] > 0 ? 1 : 0;
-    lack.emplace_back(-painted * residual.wanted.row(i).sum(), std::size_t(i));
+    lack.push_back(painted * residual.wanted.row(i).sum());
   }
-  const std::size_t count = std::min(kDarkest, lack.size());
-  std::partial_sort(lack.begin(), lack.begin() + std::ptrdiff_t(count), lack.end());
-  std::vector<std::size_t> darkest;
-  for (std::size_t k = 0; k < count; ++k) darkest.push_back(lack[k].second);
-  return darkest;
-}
-
-// The places of the greatest gains, best first.
-std::vector<std::size_t> greatest(const std::vector<double>& gains, std::size_t most) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t j = 0; j < gains.size(); ++j) order.emplace_back(-gains[j], j);
-  const std::size_t count = std::min(most, order.size());
-  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end());
-  std::vector<std::size_t> places;
-  for (std::size_t k = 0; k < count; ++k) places.push_back(order[k].second);
-  return places;
+  return numerics::indices_of_greatest(lack, kDarkest);
 }
 
 // Of many places those where a light explains most if nothing is in the way.
@@ -111,14 +97,14 @@ class MostPromising {
   // So many at most. A receiver that no light gets to would be bright if nothing were in the way, and tell against all
   // places near it: half of the places are chosen without those.
   std::vector<Eigen::Vector3d> of(const std::vector<Eigen::Vector3d>& places, std::size_t most) const {
-    std::vector<double> of_all(places.size()), of_lit(by_lit_ ? places.size() : 0);
+    std::vector<double> gain_by_all(places.size()), gain_by_lit(by_lit_ ? places.size() : 0);
     renderer::parallel_for(places.size(), [&](std::size_t j) {
       const Eigen::VectorXd column = response_.unoccluded(places[j]);
-      of_all[j] = by_all_.of_grey(column);
-      if (by_lit_) of_lit[j] = by_lit_->of_grey(column);
+      gain_by_all[j] = by_all_.of_grey(column);
+      if (by_lit_) gain_by_lit[j] = by_lit_->of_grey(column);
     });
-    std::vector<std::size_t> chosen = greatest(of_lit, most / 2);
-    for (const std::size_t j : greatest(of_all, most)) {
+    std::vector<std::size_t> chosen = numerics::indices_of_greatest(gain_by_lit, most / 2);
+    for (const std::size_t j : numerics::indices_of_greatest(gain_by_all, most)) {
       const bool is_new = std::find(chosen.begin(), chosen.end(), j) == chosen.end();
       if (is_new && chosen.size() < most) chosen.push_back(j);
     }

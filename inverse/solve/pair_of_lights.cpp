@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "inverse/numerics/chosen_from.h"
+#include "inverse/numerics/indices_of_greatest.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -15,16 +17,15 @@ constexpr double kFarthest = 0.25;    // of the region's diagonal, that they may
 
 std::vector<std::size_t> grid_lights_near(const LightResponse& response, const Eigen::Vector3d& position) {
   const double farthest = kFarthest * double(response.grid().region.diagonal());
-  std::vector<std::pair<double, std::size_t>> near;
+  std::vector<double> nearness;
+  std::vector<std::size_t> lights;
   for (const std::size_t j : response.grid_lights_near_places()) {
     const double distance = (to_eigen(response.grid().positions[j]) - position).norm();
-    if (distance <= farthest) near.emplace_back(distance, j);
+    if (distance > farthest) continue;
+    nearness.push_back(-distance);
+    lights.push_back(j);
   }
-  const std::size_t count = std::min(kNearest, near.size());
-  std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(count), near.end());
-  std::vector<std::size_t> lights;
-  for (std::size_t k = 0; k < count; ++k) lights.push_back(near[k].second);
-  return lights;
+  return numerics::chosen_from(lights, numerics::indices_of_greatest(nearness, kNearest));
 }
 
 // Normal equations of the candidates in one channel.

@@ -222,12 +222,15 @@ TEST(GltfNodes, CopiesWithoutVolumeAreLeftOut) {
   EXPECT_TRUE(mentions(loaded.warnings, "1 instance scaled to nothing"));
 }
 
-TEST(GltfNodes, WhereFloatsAreCoarseIsTold) {
+TEST(GltfNodes, WhereFloatsAreCoarseIsToldOrRefused) {
   for (const auto& [away, told] : {std::pair(1e3, false), std::pair(2e4, true)}) {
     GltfBuilder gltf = triangle_scene();
     gltf.root["nodes"][0]["translation"] = {0, 0, away};
     EXPECT_EQ(mentions(load(gltf).warnings, "from the origin, where positions are"), told) << away;
   }
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["nodes"][0]["translation"] = {0, 0, 1e6};
+  EXPECT_THROW(load(gltf), Error);
 }
 
 TEST(GltfNodes, AScaleOfZeroAcrossAFlatMeshLeavesItAsItIs) {
