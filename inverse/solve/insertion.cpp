@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "inverse/numerics/chosen_from.h"
 #include "inverse/numerics/indices_of_greatest.h"
@@ -33,15 +34,14 @@ struct Insertion {
 class IntensityGain {
  public:
   explicit IntensityGain(const Observations& observations)
-      : weight_(observations.sqrt_weight.cwiseAbs2()), pull_(weight_.asDiagonal() * observations.wanted) {}
+      : IntensityGain(observations.sqrt_weight.cwiseAbs2(), observations.wanted) {}
 
   // By the receivers that any light gets to. Absent: it gets to all.
-  static std::optional<IntensityGain> by_lit(Observations observations) {
+  static std::optional<IntensityGain> by_lit(const Observations& observations) {
     const Eigen::ArrayXd brightness = observations.target.rowwise().norm();
     const auto lit = brightness > kHidden * brightness.mean();
     if (lit.all()) return std::nullopt;
-    observations.sqrt_weight = lit.select(observations.sqrt_weight.array(), 0).matrix().eval();
-    return IntensityGain(observations);
+    return IntensityGain(lit.select(observations.sqrt_weight.array().square(), 0).matrix(), observations.wanted);
   }
 
   double fit(const Column& column, LightEstimate& light) const {
@@ -60,6 +60,9 @@ class IntensityGain {
   }
 
  private:
+  IntensityGain(Eigen::VectorXd weight, const Column& wanted)
+      : weight_(std::move(weight)), pull_(weight_.asDiagonal() * wanted) {}
+
   Eigen::VectorXd weight_;
   Column pull_;
 };
@@ -91,8 +94,9 @@ std::vector<std::size_t> darkest_receivers(const Observations& residual) {
 // Of many places those where a light explains most if nothing is in the way.
 class MostPromising {
  public:
-  MostPromising(const LightResponse& response, const Observations& residual)
-      : response_(response), by_all_(residual), by_lit_(IntensityGain::by_lit(residual)) {}
+  // explains: by all receivers.
+  MostPromising(const LightResponse& response, const Observations& residual, const IntensityGain& explains)
+      : response_(response), by_all_(explains), by_lit_(IntensityGain::by_lit(residual)) {}
 
   // So many at most. A receiver that no light gets to would be bright if nothing were in the way, and tell against all
   // places near it: half of the places are chosen without those.
@@ -113,7 +117,7 @@ class MostPromising {
 
  private:
   const LightResponse& response_;
-  IntensityGain by_all_;
+  const IntensityGain& by_all_;
   std::optional<IntensityGain> by_lit_;  // absent: light gets to all
 };
 
@@ -126,8 +130,9 @@ std::optional<Insertion> best_by_direct_light(const LightResponse& response, con
 
 std::optional<LightEstimate> propose_directly_lit(const LightResponse& response, const Observations& residual,
                                                   const std::vector<Eigen::Vector3d>& places, double least_gain) {
-  const auto best = best_by_direct_light(response, IntensityGain(residual),
-                                         MostPromising(response, residual).of(places, kTracedOfAll));
+  const IntensityGain explains(residual);
+  const MostPromising promising(response, residual, explains);
+  const auto best = best_by_direct_light(response, explains, promising.of(places, kTracedOfAll));
   if (!best || best->gain <= least_gain) return std::nullopt;
   return best->light;
 }
@@ -154,7 +159,7 @@ LightEstimates propose_insertions(const LightResponse& response, const Observati
                                   const LightEstimates& lights) {
   const Observations residual = less(observations, response, lights);
   const IntensityGain explains(residual);
-  const MostPromising promising(response, residual);
+  const MostPromising promising(response, residual, explains);
   const std::vector<std::size_t> darkest = darkest_receivers(residual);
   std::vector<Insertion> insertions;
   for (float t = kFarthest; t > kNearest; t /= kStep) {

@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::size_t kHiddenPerGatherPoint = 8;  // samples that see no gather point, of which one becomes another …
 constexpr int kMostRounds = 6;                    // … again and again …
-constexpr std::size_t kFewHidden = 100;           // … until they are this part of all …
-constexpr std::size_t kMostHiddenPoints = 2;      // … or gather points so many times as many as at first came to them
+constexpr std::size_t kFewHidden = 100;           // … until they are this part of all, or gather points the most
 
 std::vector<SurfaceSample> every_nth(const std::vector<SurfaceSample>& all, std::size_t count) {
   std::vector<SurfaceSample> chosen;
@@ -87,7 +86,7 @@ void place_gather_points(GatherOperator& gather, const renderer::RayTracer& trac
   gather.nearest = std::make_shared<const NearestGatherPoint>(tracer, gather.points, spacing);
   const renderer::Control quiet = control.without_progress();
   Cells cells = find_cells(all, *gather.nearest, quiet);
-  const std::size_t most = (1 + kMostHiddenPoints) * gather.points.size();
+  const std::size_t most = kMostGatherPoints * gather.points.size();
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<SurfaceSample> hidden = that_see_none(all, cells);
     if (round > 0 && hidden.size() < all.size() / kFewHidden) break;

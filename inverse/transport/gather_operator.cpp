@@ -210,9 +210,8 @@ void append_indirect(const RayTracer& tracer, const GatherOperator& gather, std:
 
 double bytes_to_make_gather_points(const GatherOptions& options) {
   constexpr double kBytesPerPath = 190;  // of up to kPathLength samples, twice
-  constexpr double kMost = 3;            // times as many gather points, where much is hidden
   const double paths = kBytesPerPath * options.paths_per_point;
-  const double rows = 2 * kMost * options.rays_per_point * double(sizeof(SparseTransport::Entry));
+  const double rows = 2 * double(kMostGatherPoints) * options.rays_per_point * double(sizeof(SparseTransport::Entry));
   return std::max(paths, paths / 2 + rows) * options.points_per_sample * options.samples;
 }
 

@@ -10,6 +10,7 @@
 #include "inverse/transport/split_edges.h"
 #include "renderer/core/error.h"
 #include "renderer/core/fingerprint.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -117,7 +118,7 @@ void check_spacing(const renderer::Scene& scene, const std::vector<SurfaceMesh>&
   for (const SurfaceMesh& mesh : meshes) {
     for (const Vec3f& p : mesh.positions) largest = std::max(largest, max_component(abs(p)));
   }
-  const float spacing = std::nextafter(largest, renderer::kInfinity) - largest;
+  const float spacing = renderer::spacing_at(largest);
   if (max_edge >= kLeastEdge * spacing) return;
   throw renderer::Error(
       {scene.path, "receivers",

@@ -13,6 +13,9 @@ inline constexpr float kWorldLimit = 1e9F;
 // Metres across: below this rays leave surfaces by more than what is on them.
 inline constexpr float kLeastScene = 1e-5F;
 
+// Metres between a coordinate and the next one that is a float.
+inline float spacing_at(float coordinate) { return std::nextafter(coordinate, kInfinity) - coordinate; }
+
 // Candela, lux or cd/m² of anything that gives light, and of what is wanted of it: a sun at the world's end.
 inline constexpr float kBrightest = 1e24F;
 

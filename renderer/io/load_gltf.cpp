@@ -78,19 +78,17 @@ std::size_t add_instances(const GltfDocument& document, const PlacedNode& node, 
   return left_out;
 }
 
-void check_size(const GltfDocument& document, const Scene& scene) {
-  const float across = scene.instances.empty() ? kLeastScene : bounds(scene).diagonal();
+void check_size(const GltfDocument& document, const Box3f& bounds) {
+  const float across = bounds.diagonal();
   if (across >= kLeastScene) return;
   fail(document, "scene", fmt::format("all surfaces together are {:g} m across", across),
        fmt::format("{:g} m or more: glTF's unit is the metre", kLeastScene));
 }
 
 // Floats are the farther apart the farther from the origin they are.
-void check_spacing(const GltfDocument& document, const Scene& scene, std::vector<std::string>& warnings) {
-  if (scene.instances.empty()) return;
-  const Box3f box = bounds(scene);
-  const float farthest = max_component(max(abs(box.min), abs(box.max))), across = box.diagonal();
-  const float spacing = std::nextafter(farthest, kInfinity) - farthest;
+void check_spacing(const GltfDocument& document, const Box3f& bounds, std::vector<std::string>& warnings) {
+  const float farthest = max_component(max(abs(bounds.min), abs(bounds.max))), across = bounds.diagonal();
+  const float spacing = spacing_at(farthest);
   if (spacing <= kCoarse * across) return;
   const std::string where =
       fmt::format("surfaces {:.3g} m across lie {:.3g} m from the origin, where positions are {:.2g} m apart", across,
@@ -142,8 +140,11 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   std::size_t left_out = 0;
   for (std::size_t n = 0; n < nodes.size(); ++n)
     left_out += add_instances(document, nodes[n], meshes.of_node[n], scene);
-  check_size(document, scene);
-  check_spacing(document, scene, loaded.warnings);
+  if (!scene.instances.empty()) {
+    const Box3f box = bounds(scene);
+    check_size(document, box);
+    check_spacing(document, box, loaded.warnings);
+  }
   warn_of_repairs(meshes, left_out, loaded.warnings);
   const std::vector<std::string> missing = warnings_of_missing_coordinates(scene);
   loaded.warnings.insert(loaded.warnings.end(), missing.begin(), missing.end());

@@ -32,8 +32,8 @@ struct LoadedScene {
 // emission, KHR_lights_punctual, Draco and meshoptimizer compression. Skinned meshes are in world space. Triangles of
 // zero area are dropped; tangents are made for normal maps. Error, naming the file and the place, for what is not a
 // glTF, out-of-range indices, truncated buffers, positions that are not finite, cycles among nodes, a variant that the
-// file does not have, an extension under extensionsRequired that is not read here, or surfaces too small, or too far from
-// the origin, for floats. control: to be interrupted.
+// file does not have, an extension under extensionsRequired that is not read here, or surfaces too small or too far from
+// the origin for floats. control: to be interrupted.
 LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& options = {}, const Control& control = {});
 
 }  // namespace chiaro::renderer

@@ -300,13 +300,9 @@ std::optional<Hit> RayTracer::intersect(const Ray& ray) const {
   const Mat4f& world_from_object = embree_->world_from_object[instance];
   Vec3f normal{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
   // Ng follows the order of the vertices as traced; a mirrored mesh turns its triangles round, as glTF has it.
-  const Vec3f towards_ray = -normalize(ray.direction);  // of a triangle that has no area in floats
-  if (instanced) {
-    normal = transform_normal(world_from_object, normal);
-    if (normal == Vec3f{}) normal = towards_ray;
-  } else {
-    normal = unit_or(std::copysign(1.0F, determinant3(world_from_object)) * normal, towards_ray);
-  }
+  normal = instanced ? transform_normal(world_from_object, normal)
+                     : unit_or(std::copysign(1.0F, determinant3(world_from_object)) * normal, {});
+  if (normal == Vec3f{}) normal = -normalize(ray.direction);  // of a triangle that has no area in floats
   return Hit{query.ray.tfar, query.hit.u, query.hit.v, instance, query.hit.primID, normal, instanced};
 }
 
