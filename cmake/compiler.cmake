@@ -23,6 +23,9 @@ if(CHIARO_SANITIZERS)
   if(CHIARO_SANITIZERS_WITHOUT)
     list(APPEND instrumented -fno-sanitize=${CHIARO_SANITIZERS_WITHOUT})
   endif()
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    list(APPEND instrumented -fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/unsanitized_headers.txt)
+  endif()
   target_compile_options(chiaro_compiler INTERFACE -fno-omit-frame-pointer
     "$<$<NOT:$<BOOL:$<TARGET_PROPERTY:CHIARO_UNSANITIZED>>>:${instrumented}>"
     -O1 -g1)  # more of either makes the build many times longer and finds nothing more
