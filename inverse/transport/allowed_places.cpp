@@ -75,7 +75,8 @@ Box3f bounds_of(const Mount& mount, const renderer::Scene& scene) { return surfa
 
 void check_node(const Mount& mount, const renderer::Scene& scene) {
   if (!bounds_of(mount, scene).empty()) return;
-  refuse(scene, mount.asked_in, fmt::format("no node with a mesh to hang lights on is named \"{}\"", mount.node),
+  refuse(scene, mount.asked_in,
+         fmt::format("no node with a mesh, or above one, to hang lights on is named \"{}\"", mount.node),
          "a node's name");
 }
 

@@ -21,6 +21,7 @@ constexpr float kInsideFraction = 0.6F;     // of probe rays that meet back face
 constexpr float kTouching = 0.02F;          // of the spacing
 constexpr float kRandomClearance = 1e-3F;   // of the region's diagonal
 constexpr std::uint32_t kMostTries = 1000;  // of random positions, for each
+constexpr float kFlat = 1e-6F;              // of a node's diagonal: all of it is on its surface
 constexpr int kMostHalvings = 2;            // of the spacing, where no node is free
 
 // The 6 faces' and 8 corners' directions of a cube, turned a little so that they do not run along walls.
@@ -276,19 +277,22 @@ Box3f parse_region(const renderer::Scene& scene, const Region& region) {
     const bool within = renderer::in_world(box->min) && renderer::in_world(box->max);
     if (within && box->diagonal() > 0) return *box;
     refuse(scene, asked_in, within ? "is a single point" : "reaches too far",
-           fmt::format("a box within {:g} m of the origin", renderer::kWorldLimit));
+           fmt::format("a box of some extent, within {:g} m of the origin", renderer::kWorldLimit));
   }
   Box3f box;
   for (const renderer::Instance& instance : scene.instances) {
-    if (instance.name != text) continue;
+    if (!belongs_to(scene, instance, text)) continue;
     for (const Vec3f& p : scene.meshes[instance.mesh].positions)
       box.extend(transform_point(instance.world_from_object, p));
   }
   if (box.empty()) {
-    refuse(scene, asked_in, fmt::format("no node with a mesh is named \"{}\"", text),
+    refuse(scene, asked_in, fmt::format("no node with a mesh, or above one, is named \"{}\"", text),
            "a node's name, or x0,y0,z0,x1,y1,z1 in metres");
   }
-  if (!(box.diagonal() > 0)) refuse(scene, asked_in, "is a single point", "a node of some extent");
+  if (!(min_component(box.extent()) > kFlat * box.diagonal())) {
+    refuse(scene, asked_in, fmt::format("node \"{}\" is flat, so that all places in it are on it", text),
+           "a node of some extent along x, y and z; --on-surface is for lights in front of one");
+  }
   return box;
 }
 

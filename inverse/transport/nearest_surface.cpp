@@ -27,7 +27,7 @@ bool lies_on(const OpenEdges& open, const Vector3d& weights) {
 renderer::Box3f surface_bounds(const renderer::Scene& scene, const std::optional<std::string>& node) {
   renderer::Box3f bounds;
   for (const renderer::Instance& instance : scene.instances) {
-    if (node && instance.name != *node) continue;
+    if (node && !belongs_to(scene, instance, *node)) continue;
     const renderer::Mesh& mesh = scene.meshes[instance.mesh];
     for (const renderer::Triangle& triangle : mesh.triangles) {
       for (const auto corner : triangle) {
@@ -41,7 +41,7 @@ renderer::Box3f surface_bounds(const renderer::Scene& scene, const std::optional
 NearestSurface::NearestSurface(const renderer::Scene& scene, const std::optional<std::string>& node) {
   std::vector<renderer::Box3f> boxes;
   for (const renderer::Instance& instance : scene.instances) {
-    if (node && instance.name != *node) continue;
+    if (node && !belongs_to(scene, instance, *node)) continue;
     const renderer::Mesh& mesh = scene.meshes[instance.mesh];
     const bool double_sided = scene.materials[mesh.material].double_sided;
     const bool mirrored = determinant3(instance.world_from_object) < 0;

@@ -149,7 +149,8 @@ std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose
 
 std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose& pose) {
   const std::vector<Mat4f> world = world_from_nodes(document, pose);
-  std::vector<int> waiting = roots_of(document, parents_of(document));
+  const std::vector<int> parents = parents_of(document);
+  std::vector<int> waiting = roots_of(document, parents);
   std::reverse(waiting.begin(), waiting.end());
   std::vector<bool> visited(world.size(), false);
   std::vector<PlacedNode> nodes;
@@ -159,7 +160,7 @@ std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose
     const tinygltf::Node& node = document.model->nodes[i];
     if (visited[i] || is_hidden(node)) continue;
     visited[i] = true;
-    nodes.push_back({i, node.name, node.mesh, node.camera, light_of(node), node.skin,
+    nodes.push_back({i, parents[std::size_t(i)], node.name, node.mesh, node.camera, light_of(node), node.skin,
                      weights_of(document, i, find_pose(pose, i)), world[i]});
     waiting.insert(waiting.end(), node.children.rbegin(), node.children.rend());
   }

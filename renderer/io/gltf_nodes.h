@@ -12,6 +12,7 @@ namespace chiaro::renderer {
 
 struct PlacedNode {
   int node = 0;      // index into the file's nodes
+  int parent = -1;   // the same; -1: none
   std::string name;  // of the node; may be empty
   int mesh = -1, camera = -1, light = -1, skin = -1;
   std::vector<float> weights;  // of its mesh's morph targets

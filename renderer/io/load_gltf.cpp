@@ -26,9 +26,22 @@ namespace {
 constexpr float kCoarse = 1e-4F;     // … light is off by a tenth of a percent or more …
 constexpr float kTooCoarse = 5e-3F;  // … or by more than some
 
+std::string node_name(const PlacedNode& node) {
+  return node.name.empty() ? fmt::format("node {}", node.node) : node.name;
+}
+
 std::string instance_name(const PlacedNode& node, const Mesh& mesh) {
-  if (!node.name.empty()) return node.name;
-  return mesh.name.empty() ? fmt::format("node {}", node.node) : mesh.name;
+  return node.name.empty() && !mesh.name.empty() ? mesh.name : node_name(node);
+}
+
+// At their index in the file.
+std::vector<SceneNode> hierarchy_of(const std::vector<PlacedNode>& placed) {
+  std::vector<SceneNode> nodes;
+  for (const PlacedNode& node : placed) {
+    nodes.resize(std::max(nodes.size(), std::size_t(std::max(node.node, node.parent) + 1)));
+    nodes[std::size_t(node.node)] = {node_name(node), node.parent};
+  }
+  return nodes;
 }
 
 void check_vertices(const GltfDocument& document, const PlacedNode& node, const Mesh& mesh, const Mat4f& transform) {
@@ -39,7 +52,7 @@ void add_instance(const GltfDocument& document, const PlacedNode& node, int inde
                   Scene& scene) {
   const Mesh& mesh = scene.meshes[std::size_t(index)];
   check_vertices(document, node, mesh, transform);
-  scene.instances.push_back({instance_name(node, mesh), index, transform});
+  scene.instances.push_back({instance_name(node, mesh), index, transform, node.node});
 }
 
 // Everything comes to one place.
@@ -136,6 +149,7 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
 
   const GltfPose pose = pose_at(document, options.animation, loaded.warnings);
   const std::vector<PlacedNode> nodes = place_nodes(document, pose);
+  scene.nodes = hierarchy_of(nodes);
   const NodeMeshList meshes = read_node_meshes(document, nodes, {world_from_nodes(document, pose), variant}, scene);
   std::size_t left_out = 0;
   for (std::size_t n = 0; n < nodes.size(); ++n)

@@ -64,6 +64,14 @@ void add(Fingerprint& f, const Texture& texture) {
 
 }  // namespace
 
+bool belongs_to(const Scene& scene, const Instance& instance, const std::string& name) {
+  if (instance.name == name) return true;
+  for (int node = instance.node; node >= 0; node = scene.nodes[std::size_t(node)].parent) {
+    if (scene.nodes[std::size_t(node)].name == name) return true;
+  }
+  return false;
+}
+
 Box3f bounds(const Scene& scene) {
   Box3f box;
   for (const Instance& instance : scene.instances) {

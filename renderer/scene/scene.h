@@ -61,6 +61,13 @@ struct Instance {
   std::string name;  // of the glTF node
   int mesh = 0;      // index into Scene::meshes
   Mat4f world_from_object;
+  int node = -1;  // index into Scene::nodes; -1: none
+};
+
+// One of those that instances hang on, directly or not.
+struct SceneNode {
+  std::string name;
+  int parent = -1;  // index into Scene::nodes; -1: none
 };
 
 // Looks along its -Z axis, +Y up.
@@ -78,10 +85,14 @@ struct Scene {
   std::string path;  // where it was loaded from, for messages
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  std::vector<SceneNode> nodes;
   std::vector<Material> materials;  // never empty
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
 };
+
+// Whether it is called so, or a node is that it hangs on.
+bool belongs_to(const Scene& scene, const Instance& instance, const std::string& name);
 
 Box3f bounds(const Scene& scene);  // world, over all instances' vertices; empty for a scene without triangles
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "inverse/transport/nearest_surface.h"
 #include "renderer/core/error.h"
 #include "tests/support/code_scenes.h"
 
@@ -173,6 +174,30 @@ TEST(ParseRegion, TakesSixNumbersOrANodesName) {
   const Box3f ball = parse_region(scene, {"ball"});
   EXPECT_LT(length(ball.center() - (kBall + Vec3f{10, 0, 0})), 0.02F);
   EXPECT_NEAR(ball.extent().y, 2 * kBallRadius, 0.01F);
+}
+
+TEST(ParseRegion, TakesAllThatHangsOnANode) {
+  Scene scene = room_with_ball();
+  scene.instances.push_back(scene.instances[1]);
+  scene.instances[2].world_from_object = renderer::make_transform({10, 0, 0}, {0, 0, 0, 1}, {1, 1, 1});
+  scene.nodes = {{"lamps", -1}, {"one", 0}, {"other", 1}};
+  scene.instances[1].node = 1;
+  scene.instances[2].node = 2;
+  EXPECT_NEAR(parse_region(scene, {"lamps"}).extent().x, 10 + 2 * kBallRadius, 0.02F);
+  EXPECT_NEAR(parse_region(scene, {"one"}).extent().x, 10 + 2 * kBallRadius, 0.02F);
+  EXPECT_NEAR(parse_region(scene, {"other"}).extent().x, 2 * kBallRadius, 0.02F);
+  EXPECT_NEAR(surface_bounds(scene, "lamps").extent().x, 10 + 2 * kBallRadius, 0.02F);
+}
+
+TEST(ParseRegion, RefusesAFlatNode) {
+  Scene scene = room_with_ball();
+  scene.instances[1].world_from_object = renderer::make_transform({}, {0, 0, 0, 1}, {1, 1e-9F, 1});
+  try {
+    parse_region(scene, {"ball"});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(error.parts().problem.find("\"ball\" is flat"), std::string::npos);
+  }
 }
 
 TEST(ParseRegion, RefusesTheRestByItsText) {

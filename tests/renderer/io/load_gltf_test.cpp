@@ -63,6 +63,18 @@ TEST(GltfAccessors, NormalizedIntegersBecomeFractions) {
   EXPECT_TRUE(mesh.uv[1].empty());
 }
 
+TEST(LoadGltf, InstancesBelongToTheNodesAboveThem) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.root["nodes"][0]["name"] = "leaf";
+  gltf.add_node({{"children", {0}}});
+  gltf.add_node({{"name", "tree"}, {"children", {1}}});
+  gltf.add_node({{"name", "stone"}});
+  const Scene scene = load(gltf).scene;
+  for (const char* name : {"leaf", "node 1", "tree"})
+    EXPECT_TRUE(belongs_to(scene, scene.instances.at(0), name)) << name;
+  for (const char* name : {"", "stone", "node 0"}) EXPECT_FALSE(belongs_to(scene, scene.instances.at(0), name)) << name;
+}
+
 TEST(GltfAccessors, SignedNormalizedIntegersReachMinusOne) {
   GltfBuilder gltf;
   const int positions = gltf.add_accessor<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}, 4, kShort, true);
