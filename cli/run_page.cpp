@@ -6,6 +6,7 @@
 #include "cli/embedded_file.h"
 #include "cli/html.h"
 #include "cli/solve_options.h"
+#include "inverse/solve/not_told_apart.h"
 #include "renderer/core/error.h"
 
 namespace chiaro::cli {
@@ -26,13 +27,11 @@ std::string figures(const RunPage& page) {
 
 std::string remarks(const inverse::SolveResult& result) {
   std::string text = fmt::format("Ended: {}.", inverse::words_for(result.termination));
-  for (const std::vector<int>& group : groups_not_told_apart(result)) {
+  for (const std::vector<int>& group : inverse::groups_not_told_apart(result)) {
     text += fmt::format(" Of lights {} only the sum is known.", text_of_list(group));
   }
   for (const inverse::NotReached& place : result.not_reached) {
-    const char* what = place.other_color ? "has another colour" : place.excess < 0 ? "is too dark" : "is too bright";
-    text += fmt::format(" “{}” {} near {} m ({} of the error).", place.node, what, text_of_vector(place.position),
-                        text_of_percent(place.share));
+    text += fmt::format(" Not reached: {}.", text_of_place(place));
   }
   return html_escaped(result.advice.empty() ? text : text + " Advice: " + result.advice + ".");
 }

@@ -47,8 +47,8 @@ void save_found_lights(const LoadedStage& stage, const inverse::SolveResult& res
 JsonObject solve_summary(const inverse::SolveResult& result);
 std::string solve_text(const inverse::SolveResult& result);
 
-// The lights of pairs that are not told apart, by their numbers: those that pairs link together.
-std::vector<std::vector<int>> groups_not_told_apart(const inverse::SolveResult& result);
 std::string text_of_list(const std::vector<int>& numbers);  // "1, 2 and 5"
+// "back wall near 1.2 0.8 -3 m is 62 % too dark (41 % of the error)"
+std::string text_of_place(const inverse::NotReached& place);
 
 }  // namespace chiaro::cli

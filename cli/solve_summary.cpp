@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cli/solve_options.h"
 #include "cli/text_output.h"
+#include "inverse/solve/not_told_apart.h"
 
 namespace chiaro::cli {
 namespace {
@@ -57,17 +57,6 @@ JsonObject place_summary(const inverse::NotReached& place) {
   if (place.wanted > 0) summary.emplace_back("relative_excess", place.excess / place.wanted);
   if (place.other_color) summary.emplace_back("other_color", true);
   return summary;
-}
-
-// "back wall near 1.2 0.8 -3 m is 62 % too dark (41 % of the error)"
-std::string text_of_place(const inverse::NotReached& place) {
-  const std::string by = place.wanted > 0 && std::abs(place.excess) < kMostPercent * place.wanted
-                             ? text_of_percent(std::abs(place.excess) / place.wanted) + " too "
-                             : "far too ";
-  const std::string what =
-      place.other_color ? "has another colour" : "is " + by + (place.excess < 0 ? "dark" : "bright");
-  return fmt::format("{} near {} m {} ({} of the error)", place.node, text_of_vector(place.position), what,
-                     text_of_percent(place.share));
 }
 
 std::string text_of_places(const std::vector<inverse::NotReached>& places) {
@@ -141,21 +130,14 @@ JsonObject solve_summary(const inverse::SolveResult& result) {
           {"termination", inverse::words_for(result.termination)}};
 }
 
-std::vector<std::vector<int>> groups_not_told_apart(const inverse::SolveResult& result) {
-  std::vector<std::set<int>> groups;
-  for (const std::pair<int, int>& pair : result.not_told_apart) {
-    std::set<int> linked{pair.first, pair.second};
-    std::erase_if(groups, [&](std::set<int>& group) {
-      const bool shared = group.contains(pair.first) || group.contains(pair.second);
-      if (shared) linked.merge(group);
-      return shared;
-    });
-    groups.push_back(std::move(linked));
-  }
-  std::vector<std::vector<int>> lists;
-  for (const std::set<int>& group : groups) lists.emplace_back(group.begin(), group.end());
-  std::sort(lists.begin(), lists.end());
-  return lists;
+std::string text_of_place(const inverse::NotReached& place) {
+  const std::string by = place.wanted > 0 && std::abs(place.excess) < kMostPercent * place.wanted
+                             ? text_of_percent(std::abs(place.excess) / place.wanted) + " too "
+                             : "far too ";
+  const std::string what =
+      place.other_color ? "has another colour" : "is " + by + (place.excess < 0 ? "dark" : "bright");
+  return fmt::format("{} near {} m {} ({} of the error)", place.node, text_of_vector(place.position), what,
+                     text_of_percent(place.share));
 }
 
 std::string text_of_list(const std::vector<int>& numbers) {
@@ -171,7 +153,7 @@ std::string solve_text(const inverse::SolveResult& result) {
   if (result.target_noise > 0) rows.emplace_back("noise of the target", text_of_percent(result.target_noise));
   if (!result.error_curve.empty())
     rows.emplace_back("in the search, by number of lights", text_of_curve(result.error_curve));
-  for (const std::vector<int>& group : groups_not_told_apart(result)) {
+  for (const std::vector<int>& group : inverse::groups_not_told_apart(result)) {
     rows.emplace_back("not told apart", fmt::format("lights {}: only their sum is known", text_of_list(group)));
   }
   if (!result.not_reached.empty()) rows.emplace_back("not reached", text_of_places(result.not_reached));

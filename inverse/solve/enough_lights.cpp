@@ -1,6 +1,7 @@
 #include "inverse/solve/enough_lights.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "inverse/solve/error_curve.h"
 
@@ -19,6 +20,23 @@ LightEstimates better_of_fewer(const RegionSearch& searched, const Optimum& opti
     least = set.relative_l2;
   }
   return best != nullptr ? light_estimates(best->lights) : LightEstimates();
+}
+
+// The set with one light more: no worse, as one that does not help hardly shines, unless others have to make room for
+// it. Nothing where there is no place.
+std::optional<LightSet> with_one_more(const RegionSearch& searched, const FillUpLimits& limits, bool by_held_out,
+                                      const LightSet& set) {
+  LightEstimates lights = light_estimates(set.lights);
+  const LightEstimates more = filled_up(searched.response, searched.judged, lights, lights.size() + 1, limits);
+  if (more.size() != lights.size() + 1) return std::nullopt;
+  const double error = by_held_out ? searched.held_out_error(more) : searched.exact_error(more);
+  if (error <= set.relative_l2) return set_of(more, error);
+  std::vector<Eigen::Vector3d> others;
+  for (const LightEstimate& light : lights) others.push_back(light.position);
+  if (!searched.response.places().has_room(more.back().position, others)) return set_of(more, error);
+  lights.push_back({more.back().position, Eigen::Array3d::Zero()});
+  light_the_dark(lights);
+  return set_of(lights, set.relative_l2);
 }
 
 }  // namespace
@@ -42,6 +60,18 @@ bool fill_up_to_wanted(const SolveProblem& problem, const SolveOptions& options,
   const bool better = others.size() >= wanted && error(others) < error(optimum.lights);
   if (better) optimum.lights = std::move(others);
   return more || better;
+}
+
+void complete_curve(const SolveProblem& problem, const RegionSearch& searched, const FillUpLimits& limits,
+                    bool by_held_out, std::vector<LightSet>& curve) {
+  if (may_share_places(problem)) return let_none_be_worse_than_fewer(curve);
+  for (std::size_t k = 1; k < curve.size() && !limits.clock.out_of_time(); ++k) {
+    const LightSet& fewer = curve[k - 1];
+    const bool is_missing = curve[k].lights.size() > fewer.lights.size() + 1;
+    if (!is_missing && curve[k].relative_l2 <= fewer.relative_l2) continue;
+    std::optional<LightSet> set = with_one_more(searched, limits, by_held_out, fewer);
+    if (set && (is_missing || set->relative_l2 < curve[k].relative_l2)) put_in_curve(*std::move(set), curve);
+  }
 }
 
 }  // namespace chiaro::inverse

@@ -10,4 +10,9 @@ namespace chiaro::inverse {
 bool fill_up_to_wanted(const SolveProblem& problem, const SolveOptions& options, const RegionSearch& searched,
                        const FillUpLimits& limits, Optimum& optimum);
 
+// The error curve has a set of every size up to the largest's, and one light more never makes a set worse: where lights
+// may share places, and otherwise as far as places for them are found.
+void complete_curve(const SolveProblem& problem, const RegionSearch& searched, const FillUpLimits& limits,
+                    bool by_held_out, std::vector<LightSet>& curve);
+
 }  // namespace chiaro::inverse

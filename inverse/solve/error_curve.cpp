@@ -35,6 +35,13 @@ LightEstimates as_many_as_asked_for(LightEstimates lights, std::size_t count) {
 }
 
 void let_none_be_worse_than_fewer(std::vector<LightSet>& curve) {
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    const std::size_t next = curve[k - 1].lights.size() + 1;
+    if (curve[k].lights.size() <= next) continue;
+    const LightEstimates more = as_many_as_asked_for(light_estimates(curve[k - 1].lights), next);
+    if (more.empty()) return;
+    curve.insert(curve.begin() + std::ptrdiff_t(k), set_of(more, curve[k - 1].relative_l2));
+  }
   for (std::size_t k = 0; k < curve.size(); ++k) {
     const LightSet& best = k == 0 || curve[k].relative_l2 <= curve[k - 1].relative_l2 ? curve[k] : curve[k - 1];
     const LightEstimates lit = as_many_as_asked_for(light_estimates(best.lights), curve[k].lights.size());

@@ -150,6 +150,7 @@ bool any_at_border(const SolveProblem& problem, const SolveResult& result) {
 }
 
 constexpr const char* kWithoutConstraints = "without the constraints lights may come closer";
+constexpr const char* kLargerRegion = "lights stand at the border of their region: a larger one may help";
 
 // As bright as they may be.
 bool any_at_limit(const SolveProblem& problem, const SolveResult& result) {
@@ -187,12 +188,14 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
     return "more time may bring the lights closer: the time limit ended their search";
   const int most = most_lights(options);
   if (int(result.lights.size()) >= most && falls_still(result, result.lights.size())) {
-    return fmt::format("more lights may come closer: {} {} allowed", most, most == 1 ? "was" : "were");
+    const bool held_back = (problem.grid.region || !problem.places.boxes.empty()) && any_at_border(problem, result);
+    return fmt::format("more lights may come closer: {} {} allowed{}", most, most == 1 ? "was" : "were",
+                       held_back ? std::string("; ") + kLargerRegion : "");
   }
   if (result.termination == Termination::kEarlierRefined) return "a solve without --from looks for further lights";
   if (options.method == SolveMethod::kThesis) return "the joint method, or another threshold, may come closer";
   if (any_at_limit(problem, result)) return kWithoutConstraints;
-  if (any_at_border(problem, result)) return "lights stand at the border of their region: a larger one may help";
+  if (any_at_border(problem, result)) return kLargerRegion;
   if (ruled || !problem.places.mounts.empty() || problem.places.surface_distance > 0 ||
       problem.places.light_distance > 0) {
     return kWithoutConstraints;
@@ -200,6 +203,15 @@ std::string advice_for(const SolveProblem& problem, const SolveOptions& options,
   return problem.places.boxes.empty() && !problem.grid.region
              ? "no more lights explain it: paint it otherwise, give it less weight, or name a region farther away"
              : "no more lights from anywhere in the region explain it: paint it otherwise, or give it less weight";
+}
+
+void leave_unknown_beyond_region(SolveResult& result) {
+  const float most = result.region.diagonal();
+  for (FoundLight& found : result.lights) {
+    for (int a = 0; a < 3; ++a) {
+      if (found.position_interval[a] > most) found.position_interval[a] = renderer::kInfinity;
+    }
+  }
 }
 
 void leave_unknown_at_border(const SolveProblem& problem, SolveResult& result) {

@@ -9,6 +9,10 @@ namespace chiaro::inverse {
 // illumination together.
 std::vector<NotReached> places_not_reached(const Target& target, const std::vector<Vec3f>& illumination, double noise);
 
+// A place that is no better known than to somewhere in the region is not known: intervals larger than the region become
+// infinite.
+void leave_unknown_beyond_region(SolveResult& result);
+
 // Nobody knows how far off lights are that the border of their region holds while the target is not reached: their
 // intervals become infinite.
 void leave_unknown_at_border(const SolveProblem& problem, SolveResult& result);

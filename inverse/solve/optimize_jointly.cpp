@@ -185,8 +185,12 @@ std::tuple<LightEstimates, std::vector<int>> cut_tree(const JointSearch& search,
                                                       Observations remaining, const LightTree& tree,
                                                       StageClock& clock) {
   const SolveOptions& options = search.options;
-  const CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
-                               options.max_lights - int(beside_surfaces.size())};
+  CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1,
+                         options.max_lights - int(beside_surfaces.size())};
+  if (options.exact_lights > 0) {
+    const int wanted = std::max(1, options.exact_lights - int(beside_surfaces.size()));
+    cut_options = {0, wanted, wanted};
+  }
   const LightCutResult cut = cut_light_tree(tree, remaining, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
   remaining.rules = search.problem.intensities;
@@ -280,6 +284,10 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.times_noise = remaining.noise > 0 ? count.error / remaining.noise : std::numeric_limits<double>::infinity();
   found.held_out = std::move(count.held_out);
   found.sets = std::move(count.sets);
+  const std::vector<LightEstimates> earlier = earlier_sets(options);
+  const auto same = std::find_if(earlier.begin(), earlier.end(),
+                                 [&](const LightEstimates& set) { return set.size() == found.others.size(); });
+  if (same != earlier.end()) found.start = *same;
   found.out_of_time = count.out_of_time || clock.out_of_time();
   return found;
 }

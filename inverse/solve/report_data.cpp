@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "inverse/solve/not_told_apart.h"
 #include "inverse/solve/packed_values.h"
 
 namespace chiaro::inverse {
@@ -77,7 +78,18 @@ json found_json(const FoundLight& found) {
   return light;
 }
 
+json place_json(const NotReached& place) {
+  return {{"node", place.node},
+          {"position", vector_json(place.position)},
+          {"share_of_error", place.share},
+          {"too_dark", place.excess < 0},
+          {"relative_excess", place.wanted > 0 ? json(place.excess / place.wanted) : json()},
+          {"other_color", place.other_color}};
+}
+
 json result_json(const SolveResult& result) {
+  json places = json::array();
+  for (const NotReached& place : result.not_reached) places.push_back(place_json(place));
   json lights = json::array(), seconds = json::array();
   for (const FoundLight& found : result.lights) lights.push_back(found_json(found));
   for (const StageReport& stage : result.stages) seconds.push_back(stage.seconds);
@@ -89,6 +101,9 @@ json result_json(const SolveResult& result) {
           {"target_noise", result.target_noise},
           {"important_vertices", result.important_vertices},
           {"stage_seconds", seconds},
+          {"not_told_apart", groups_not_told_apart(result)},
+          {"not_reached", places},
+          {"advice", result.advice},
           {"termination", words_for(result.termination)}};
 }
 

@@ -366,12 +366,13 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
     // Those that have settled fit the important vertices less closely, and the target more, than those of the search.
     const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : searched->exact_error(lights);
     put_in_curve(set_of(lights, error), result.error_curve);
-    if (may_share_places(problem)) let_none_be_worse_than_fewer(result.error_curve);
+    complete_curve(problem, *searched, {clock, control}, optimum.curve_by_held_out, result.error_curve);
   }
   result.region = searched->transport.cache.grid.region;
   result.lights_may_be_farther = searched->lights_may_be_farther;
   result.target_noise = target_noise(problem.target);
   judge(problem, options, std::move(by_trace.traced), result);
+  leave_unknown_beyond_region(result);
   leave_unknown_at_border(problem, result);
   result.stages = clock.stages();
   if (options.keep_stages) {

@@ -34,6 +34,7 @@ function makePage() {
   document.getElementById("termination").textContent =
     `Ended: ${result.termination}. ${receivers.count} receivers, ${receivers.triangleCount} triangles.`;
   fillFigures(result);
+  fillRemarks(result);
   fillStages(report.stages, result.stage_seconds);
   const view = makeView(report, receivers);
   fillLights(result.lights, (light) => view && view.turnAbout(light.position));
@@ -42,6 +43,7 @@ function makePage() {
   Object.assign(document.body.dataset, {
     view: view ? "yes" : "no",
     lights: document.querySelectorAll("#lights tbody tr").length,
+    remarks: document.querySelectorAll("#remarks li").length,
     triangles: view ? view.renderer.info.render.triangles : 0,
   });
 }

@@ -1,6 +1,8 @@
 "use strict";
 // The figures of the whole solve, the lights found, and what each stage says.
 
+const kMostPercent = 10;  // times what was wanted: more is not told in percent
+
 function element(tag, text) {
   const made = document.createElement(tag);
   if (text !== undefined) made.textContent = text;
@@ -23,6 +25,27 @@ function fillFigures(result) {
     entry.append(element("dt", name), element("dd", value));
     document.getElementById("figures").append(entry);
   }
+}
+
+// "back wall near 1.2, 0.8, −3 m is 62 % too dark: 41 % of the error"
+function textOfPlace(place) {
+  const how = place.too_dark ? "dark" : "bright", times = Math.abs(place.relative_excess ?? Infinity);
+  const amount = times < kMostPercent ? percent(times) : "far";
+  const what = place.other_color ? "has another colour" : `is ${amount} too ${how}`;
+  const at = place.position.map((metres) => significant(metres, 3)).join(", ");
+  return `Not reached: ${place.node} near ${at} m ${what}, ${percent(place.share_of_error)} of the error.`;
+}
+
+// Where the target cannot be produced, what would help, and which lights cannot be told apart.
+function fillRemarks(result) {
+  const remarks = result.not_reached.map(textOfPlace);
+  if (result.advice) remarks.push(`Advice: ${result.advice}.`);
+  for (const group of result.not_told_apart) {
+    remarks.push(`Of lights ${group.slice(0, -1).join(", ")} and ${group.at(-1)} only the sum is known.`);
+  }
+  const list = document.getElementById("remarks");
+  list.append(...remarks.map((text) => element("li", text)));
+  list.hidden = remarks.length === 0;
 }
 
 // As many decimals as the surest of the numbers has a use for.

@@ -44,8 +44,12 @@ std::vector<renderer::PointLight> lights_of(const SolveResult& result) {
 TEST_F(ConstrainedSolve, LightsKeepTheirDistances) {
   SolveProblem ruled = problem(target_);
   ruled.places = {.surface_distance = 0.9, .light_distance = 1.5};
-  const auto lights = lights_of(solve(ruled, options(3)));
+  const SolveResult result = solve(ruled, options(3));
+  const auto lights = lights_of(result);
   ASSERT_EQ(lights.size(), 3U);
+  ASSERT_EQ(result.error_curve.size(), 3U);
+  for (std::size_t k = 1; k < 3; ++k)
+    EXPECT_LE(result.error_curve[k].relative_l2, result.error_curve[k - 1].relative_l2);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     EXPECT_GE(test::distance_to_surfaces(corner_.scene(), to_eigen(lights[i].position)), 0.9 - 1e-6);
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(length(lights[i].position - lights[j].position), 1.5F);

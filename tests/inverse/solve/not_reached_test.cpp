@@ -113,6 +113,15 @@ TEST(NotReached, LightsAtNoBorderKeepTheirIntervals) {
   EXPECT_FALSE(knows({{{1, 2, 2}, {3, 2, 3}}}));
 }
 
+TEST(NotReached, IntervalsLargerThanTheRegionAreUnknown) {
+  SolveResult result;
+  result.region = {{0, 0, 0}, {1, 2, 2}};
+  result.lights.push_back({renderer::PointLight{"", {}, {1, 1, 1}}, 1, {0.1F, 3.1F, 2.9F}, {7, 8, 9}});
+  leave_unknown_beyond_region(result);
+  EXPECT_EQ(result.lights[0].position_interval, (Vec3f{0.1F, renderer::kInfinity, 2.9F}));
+  EXPECT_EQ(result.lights[0].intensity_interval, (Vec3f{7, 8, 9}));
+}
+
 // A bright patch on a wall and nothing else, and lights that may stand on the other side of the room alone.
 TEST(NotReached, SolvesSayWhatMayHelp) {
   const PaintedCorner corner;
@@ -138,6 +147,11 @@ TEST(NotReached, SolvesSayWhatMayHelp) {
   EXPECT_TRUE(enough.not_reached.empty());
   EXPECT_TRUE(enough.advice.empty());
   problem.places.boxes = {{{1.5F, 2.5F, 1.5F}, {2, 2.8F, 2}}};
+  options.max_lights = 1;
+  const std::string both = solve(problem, options).advice;
+  EXPECT_NE(both.find("more lights"), std::string::npos) << both;
+  EXPECT_NE(both.find("a larger one may help"), std::string::npos) << both;
+  options.max_lights = 8;
   const SolveResult narrow = solve(problem, options);
   EXPECT_FALSE(narrow.not_reached.empty());
   EXPECT_NE(narrow.advice.find("region"), std::string::npos) << narrow.advice;

@@ -413,6 +413,13 @@ TEST(Solve, FindsLightsOutsideTheBoundsOfAnOpenScene) {
   EXPECT_LT(farthest_from(known, positions_of(result)), 0.01 * open.diagonal());
   EXPECT_LT(result.relative_l2, 0.02);
   EXPECT_FALSE(open.tracer().bounds().contains(Vec3f{-3, 4, 2}));
+  // What was found may be refined, in as many lights as one likes, without a further search of where they are.
+  SolveOptions fewer = quick();
+  fewer.earlier = result.error_curve;
+  fewer.exact_lights = 1;
+  const SolveResult one = solve(problem, fewer);
+  EXPECT_EQ(std::count_if(one.stages.begin(), one.stages.end(), [](const auto& s) { return s.name == "cache"; }), 1);
+  EXPECT_LE(one.relative_l2_cached, one.initial_relative_l2 * 1.01);
   // Where the user says how far it reaches, it reaches no farther.
   problem.grid.region = default_region(open.tracer());
   const SolveResult within = solve(problem, quick());
@@ -564,6 +571,8 @@ TEST(Solve, MoreLightsThanAreNeededLeaveNoMore) {
     const SolveResult result = solve(problem_of(corner, target, 0), options);
     EXPECT_EQ(int(result.lights.size()), count);
     EXPECT_LT(result.relative_l2, 1e-3) << count;
+    ASSERT_EQ(int(result.error_curve.size()), count);
+    for (int k = 0; k < count; ++k) EXPECT_EQ(int(result.error_curve[std::size_t(k)].lights.size()), k + 1);
   }
 }
 
