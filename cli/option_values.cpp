@@ -157,9 +157,12 @@ renderer::Vec3f parse_albedo(std::string_view text) {
 }
 
 std::vector<std::string> parse_words(std::string_view text, const std::vector<std::string>& allowed) {
-  if (text == "all") return allowed;
   std::vector<std::string> words;
   for (const std::string_view part : split(text)) {
+    if (part == "all") {
+      words = allowed;
+      continue;
+    }
     if (std::find(allowed.begin(), allowed.end(), part) == allowed.end()) {
       refuse(part, fmt::format("all, or some of {} with commas between", fmt::join(allowed, ", ")));
     }

@@ -31,13 +31,16 @@ struct Range {
 
 Range receivers_of(Shard shard, const TransportCache& header) {
   const std::size_t tile = TransportCacheWriter::receivers_of_tile(header.grid.positions.size());
+  const std::size_t tiles = (header.receiver_count + tile - 1) / tile;
+  if (shard.count > tiles) {
+    throw Error({"", "option --shard",
+                 fmt::format("{} receivers do not make {} parts", header.receiver_count, shard.count),
+                 fmt::format("at most {}", tiles)});
+  }
   const auto begin = [&](std::size_t index) {
-    return index == shard.count ? header.receiver_count : index * header.receiver_count / shard.count / tile * tile;
+    return std::min(index * tiles / shard.count * tile, header.receiver_count);
   };
-  const Range range{begin(shard.index), begin(shard.index + 1)};
-  if (range.first < range.last) return range;
-  throw Error({"", "option --shard",
-               fmt::format("{} receivers do not make {} parts", header.receiver_count, shard.count), "fewer parts"});
+  return {begin(shard.index), begin(shard.index + 1)};
 }
 
 // How much is copied at once, in whole tiles of the writer.

@@ -104,6 +104,7 @@ TEST(CliOptionValues, AlbedosAreGreyOrColoured) {
 TEST(CliOptionValues, WordsAreTheOnesAllowed) {
   const std::vector<std::string> allowed{"albedo", "depth", "normal"};
   EXPECT_EQ(parse_words("all", allowed), allowed);
+  EXPECT_EQ(parse_words("all,albedo", allowed), allowed);
   EXPECT_EQ(parse_words("normal,albedo,normal", allowed), (std::vector<std::string>{"normal", "albedo"}));
   EXPECT_THROW(parse_words("albedo,colour", allowed), UsageError);
   EXPECT_THROW(parse_words("", allowed), UsageError);

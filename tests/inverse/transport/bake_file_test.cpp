@@ -148,7 +148,9 @@ TEST_F(BakeFile, PartsMakeTheWhole) {
   merge_transport_caches(parts, folder_ / "merged.exr", {});
   EXPECT_EQ(read_file(folder_ / "merged.exr"), whole());
   EXPECT_THROW(load_transport_cache(parts[0]), Error);
-  EXPECT_THROW(bake_as({.shard = {0, 1'000'000}, .resume = false}, "none.exr"), Error);
+  for (const std::size_t i : {0, 500'000, 999'999}) {
+    EXPECT_THROW(bake_as({.shard = {i, 1'000'000}, .resume = false}, "none.exr"), Error) << i;
+  }
 }
 
 constexpr std::pair<int, int> kTilings[] = {{3, 5}, {100, 64}, {7, 1500}, {1024, 2048}};

@@ -473,9 +473,11 @@ TEST(GltfBuffers, DataUrisAndFilesWithSpacesAreRead) {
   ordered_json root = gltf.root;
   root["buffers"] = ordered_json::array({{{"byteLength", 36}, {"uri", "my%20buffer.bin"}}});
   EXPECT_EQ(load_gltf(folder.write("a.gltf", root.dump())).scene.meshes.size(), 1U);
-  root["buffers"][0]["uri"] = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
-  const LoadedScene loaded = load_gltf(folder.write("b.gltf", root.dump()));
-  EXPECT_EQ(loaded.scene.meshes.at(0).positions[1], (Vec3f{1, 0, 0}));
+  for (const std::string head : {"data:application/octet-stream;base64,", "DATA:;Base64,"}) {
+    root["buffers"][0]["uri"] = head + "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    const LoadedScene loaded = load_gltf(folder.write("b.gltf", root.dump()));
+    EXPECT_EQ(loaded.scene.meshes.at(0).positions[1], (Vec3f{1, 0, 0})) << head;
+  }
 }
 
 TEST(GltfExtensions, UsedOnesThatAreNotReadWarnOnce) {
