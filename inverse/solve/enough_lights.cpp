@@ -29,7 +29,7 @@ std::optional<LightSet> with_one_more(const RegionSearch& searched, const FillUp
   LightEstimates lights = light_estimates(set.lights);
   const LightEstimates more = filled_up(searched.response, searched.judged, lights, lights.size() + 1, limits);
   if (more.size() != lights.size() + 1) return std::nullopt;
-  const double error = by_held_out ? searched.held_out_error(more) : searched.exact_error(more);
+  const double error = searched.error_in_curve(more, by_held_out);
   if (error <= set.relative_l2) return set_of(more, error);
   std::vector<Eigen::Vector3d> others;
   for (const LightEstimate& light : lights) others.push_back(light.position);

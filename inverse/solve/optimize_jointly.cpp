@@ -243,6 +243,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   Observations remaining = less(search.searched, response, beside_surfaces);
   remaining.rules = {};
   const bool goes_on = search.begun != nullptr;
+  const std::vector<LightEstimates> earlier = earlier_sets(options);
   JointLights found;
   std::tie(found.start, found.cut) = goes_on ? std::tuple(search.begun->start, search.begun->cut)
                                              : cut_tree(search, beside_surfaces, remaining, tree, clock);
@@ -253,7 +254,7 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
     return choose_light_count(
         response, remaining, tree,
         {options.max_lights - already(), std::max(0, options.exact_lights - already()), clock.seconds_left(),
-         search.transport_error, &search.exact, search.held_out, search.control, earlier_sets(options),
+         search.transport_error, &search.exact, search.held_out, search.control, earlier,
          goes_on ? begun_with(*search.begun) : BegunSearch{}, already() > 0 ? nullptr : &search.judged});
   };
   LightCountResult count = find_the_rest();
@@ -284,7 +285,6 @@ JointLights search_jointly(const JointSearch& search, LightEstimates beside_surf
   found.times_noise = remaining.noise > 0 ? count.error / remaining.noise : std::numeric_limits<double>::infinity();
   found.held_out = std::move(count.held_out);
   found.sets = std::move(count.sets);
-  const std::vector<LightEstimates> earlier = earlier_sets(options);
   const auto same = std::find_if(earlier.begin(), earlier.end(),
                                  [&](const LightEstimates& set) { return set.size() == found.others.size(); });
   if (same != earlier.end()) found.start = *same;

@@ -197,8 +197,8 @@ JointSearch RegionSearch::joint_search() const {
 }
 
 std::optional<Box3f> RegionSearch::wider_region() const {
-  const bool may_grow = basis->region_may_grow && basis->options.earlier.empty() && is_joint(*basis) &&
-                        !found_.out_of_time && found_.beside_surfaces.empty();
+  const bool may_grow =
+      basis->region_may_grow && is_joint(*basis) && !found_.out_of_time && found_.beside_surfaces.empty();
   if (!may_grow) return std::nullopt;
   const std::vector<Column> columns = evaluate_columns(response, found_.others, Evaluation::kTracedVisibility);
   std::vector<Vector3d> lights;

@@ -15,7 +15,7 @@ struct SearchBasis {
   Importance importance;
   std::vector<renderer::SurfaceSample> samples;  // the important vertices
   Observations published;                        // what they want, by the weights of (3.6)
-  bool region_may_grow;                          // nobody says where it ends
+  bool region_may_grow;                          // nobody says where it ends, nor do earlier lights
 };
 
 // Lights sought in one region, from its transport up to the trace that they are judged by.
@@ -52,6 +52,10 @@ class RegionSearch {
   double held_out_error(const LightEstimates& lights) const;
   // Of lights, (3.6), at the important vertices, by light that is not interpolated. Joint method alone.
   double exact_error(LightEstimates lights) const;
+  // The one of these that the error curve has.
+  double error_in_curve(const LightEstimates& lights, bool by_held_out) const {
+    return by_held_out ? held_out_error(lights) : exact_error(lights);
+  }
 
   const std::shared_ptr<const SearchBasis> basis;
   const SolveProblem problem;

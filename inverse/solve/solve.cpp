@@ -248,7 +248,12 @@ SearchBasis make_basis(const SolveProblem& problem, const SolveOptions& options,
   const std::vector<Vec3f> fixed = fixed_illumination(problem, samples, kFixedSamples, options, control);
   Observations published = observe_target(problem.target, {importance.chosen, importance.probability}, fixed);
   published = with_noise(std::move(published), problem.target, importance.chosen);
-  return {options, control, std::move(importance), std::move(samples), std::move(published), region_may_grow(problem)};
+  return {options,
+          control,
+          std::move(importance),
+          std::move(samples),
+          std::move(published),
+          region_may_grow(problem) && options.earlier.empty()};
 }
 
 // Null: `fallback` is what there is, as the grid of another region has too many lights, or none.
@@ -364,7 +369,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
   result.error_curve = optimum.error_curve;
   if (options.method == SolveMethod::kJoint) {
     // Those that have settled fit the important vertices less closely, and the target more, than those of the search.
-    const double error = optimum.curve_by_held_out ? searched->held_out_error(lights) : searched->exact_error(lights);
+    const double error = searched->error_in_curve(lights, optimum.curve_by_held_out);
     put_in_curve(set_of(lights, error), result.error_curve);
     complete_curve(problem, *searched, {clock, control}, optimum.curve_by_held_out, result.error_curve);
   }

@@ -17,11 +17,10 @@ namespace {
 
 constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-// Of schemes and the like; prefix: in lower case.
-bool starts_with_ignoring_case(std::string_view text, std::string_view prefix) {
-  return text.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), text.begin(), [](char p, char c) {
-           return p == char(std::tolower(static_cast<unsigned char>(c)));
-         });
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return lower;
 }
 
 int hex_digit(char c) {
@@ -90,10 +89,7 @@ std::string read_data_uri(const std::string& uri, const std::string& file, const
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos) throw Error({file, place, "a data URI without data", "data:…;base64,…"});
   const std::string_view header(uri.data(), comma), data(uri.data() + comma + 1, uri.size() - comma - 1);
-  constexpr std::string_view kBase64 = ";base64";
-  const bool is_base64 = header.size() >= kBase64.size() &&
-                         starts_with_ignoring_case(header.substr(header.size() - kBase64.size()), kBase64);
-  if (!is_base64) return percent_decoded(data);
+  if (!in_lower_case(header).ends_with(";base64")) return percent_decoded(data);
   std::optional<std::string> decoded =
       base64_decoded(data.find('%') == std::string_view::npos ? std::string(data) : percent_decoded(data));
   if (!decoded) throw Error({file, place, "a data URI that is not base64", "base64"});
@@ -115,7 +111,7 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
 
 }  // namespace
 
-bool is_data_uri(std::string_view uri) { return starts_with_ignoring_case(uri, "data:"); }
+bool is_data_uri(std::string_view uri) { return in_lower_case(uri.substr(0, 5)) == "data:"; }
 
 std::vector<std::string> file_names_of(const std::string& uri) {
   std::vector<std::string> names{percent_decoded(uri), uri};
