@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include <Eigen/QR>
-
 #include "inverse/numerics/chosen_from.h"
+#include "inverse/numerics/decompositions.h"
 #include "inverse/solve/check_brightness.h"
 #include "inverse/solve/check_lights_in_place.h"
 #include "inverse/solve/fit_traced_columns.h"
@@ -86,8 +85,7 @@ ChannelErrors errors_of_channel(const Observations& observations, const TracedCo
       });
   const Eigen::MatrixXd& basis = directions.basis;
   const Eigen::MatrixXd inverse =
-      basis * (basis.transpose() * product * basis).completeOrthogonalDecomposition().pseudoInverse() *
-      basis.transpose();
+      basis * numerics::pseudoinverse(basis.transpose() * product * basis) * basis.transpose();
   // What each receiver would leave if it were left out of the fit, which the few beside a lamp lead to themselves.
   const Eigen::VectorXd leverage = (columns * inverse).cwiseProduct(instruments).rowwise().sum();
   const Eigen::VectorXd left = observations.sqrt_weight.cwiseProduct(residual.col(channel))

@@ -1,6 +1,6 @@
 #include "inverse/solve/fit_traced_columns.h"
 
-#include <Eigen/Eigenvalues>
+#include "inverse/numerics/decompositions.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -17,9 +17,9 @@ Eigen::MatrixXd gram_without_noise(const WeightedSystem& one, const WeightedSyst
   Eigen::MatrixXd all = inverse.asDiagonal() * with_noise * inverse.asDiagonal();
   all.diagonal().array() += kRounding;
   const Eigen::MatrixXd sure = inverse.asDiagonal() * (product + product.transpose()) * inverse.asDiagonal() / 2;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> of(sure, all);
-  const Eigen::MatrixXd directions = length.asDiagonal() * all * of.eigenvectors();
-  return directions * of.eigenvalues().cwiseMax(kLeastSure).asDiagonal() * directions.transpose();
+  const numerics::Eigendecomposition eigen = numerics::generalized_eigen(sure, all);
+  const Eigen::MatrixXd directions = length.asDiagonal() * all * eigen.vectors;
+  return directions * eigen.values.cwiseMax(kLeastSure).asDiagonal() * directions.transpose();
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <Eigen/LU>
-
+#include "inverse/numerics/decompositions.h"
 #include "inverse/numerics/median.h"
 #include "renderer/core/control.h"
 
@@ -114,7 +113,7 @@ Eigen::VectorXd gauss_newton_step(const std::vector<ColumnWithGradient>& direct,
   normal.diagonal() *= 1 + kDamping;
   // A light that has no effect has no row.
   for (Eigen::Index k = 0; k < 6 * n; ++k) normal(k, k) += normal(k, k) > 0 ? 0 : 1;
-  return -normal.partialPivLu().solve(gradient);
+  return -numerics::solve(normal, gradient);
 }
 
 // Steps of lights one after the other.
@@ -168,7 +167,7 @@ Eigen::VectorXd solve_with_instruments(const Eigen::MatrixXd& normal, const Eige
   }
   Eigen::VectorXd intensity = Eigen::VectorXd::Zero(normal.rows());
   while (!lit.empty()) {
-    const Eigen::VectorXd solution = normal(lit, lit).partialPivLu().solve(Eigen::VectorXd(wanted(lit)));
+    const Eigen::VectorXd solution = numerics::solve(normal(lit, lit), wanted(lit));
     if (solution.allFinite() && solution.minCoeff() >= 0) {
       intensity(lit) = solution;
       break;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "inverse/numerics/decompositions.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -57,14 +57,14 @@ KnownDirections known_directions(const Eigen::MatrixXd& normal,
                                  const std::function<bool(double, const Eigen::VectorXd&)>& tells) {
   KnownDirections result;
   result.scale = normal.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(result.scale.asDiagonal() * normal *
-                                                             result.scale.asDiagonal());
+  const numerics::Eigendecomposition eigen =
+      numerics::symmetric_eigen(result.scale.asDiagonal() * normal * result.scale.asDiagonal());
   std::vector<Eigen::Index> known;
   for (Eigen::Index e = 0; e < normal.rows(); ++e) {
-    const double value = eigen.eigenvalues()[e];
-    if (value > kRounding && tells(value, result.scale.cwiseProduct(eigen.eigenvectors().col(e)))) known.push_back(e);
+    const double value = eigen.values[e];
+    if (value > kRounding && tells(value, result.scale.cwiseProduct(eigen.vectors.col(e)))) known.push_back(e);
   }
-  const Eigen::MatrixXd directions = eigen.eigenvectors()(Eigen::all, known);
+  const Eigen::MatrixXd directions = eigen.vectors(Eigen::all, known);
   result.basis = result.scale.asDiagonal() * directions;
   result.unknown = Eigen::MatrixXd::Identity(normal.rows(), normal.rows()) - directions * directions.transpose();
   return result;

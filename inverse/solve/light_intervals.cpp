@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "inverse/numerics/decompositions.h"
 #include "inverse/solve/sandwich_estimate.h"
 #include "renderer/core/control.h"
 
@@ -44,7 +45,7 @@ Eigen::MatrixXd product_of(const Derivatives& instruments, const Derivatives& de
 Eigen::MatrixXd inverse_of(const FitAtRest& fit, const Eigen::MatrixXd& basis) {
   if (basis.cols() == 0) return Eigen::MatrixXd::Zero(basis.rows(), basis.rows());
   const Eigen::MatrixXd product = product_of(fit.instruments, fit.derivatives, fit.weight);
-  return basis * (basis.transpose() * product * basis).inverse() * basis.transpose();
+  return basis * numerics::inverted(basis.transpose() * product * basis) * basis.transpose();
 }
 
 // What receivers `first` … would leave if each of them were left out of the fit.

@@ -13,9 +13,8 @@
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
+#include "inverse/numerics/decompositions.h"
 #include "inverse/transport/eigen_vectors.h"
 #include "renderer/core/control.h"
 
@@ -146,8 +145,7 @@ class LightsAtPlaces {
     sum.squared_jacobian.selfadjointView<Eigen::Lower>().rankUpdate(moved.transpose());
     sum.gradient += moved.transpose() * residual;
     if (changes.cols() == 0) return;
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(changes);
-    const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(changes.rows(), qr.rank());
+    const Eigen::MatrixXd basis = numerics::orthonormal_basis(changes);
     const Eigen::MatrixXd along = basis.transpose() * moved;
     sum.squared_jacobian.selfadjointView<Eigen::Lower>().rankUpdate(along.transpose(), -1);
     sum.gradient -= along.transpose() * (basis.transpose() * residual).eval();
@@ -186,15 +184,15 @@ class CondensedResiduals final : public ceres::CostFunction {
     const double per_unit = units_.diagonal / units_.norm;
     normal.squared_jacobian *= per_unit * per_unit;
     normal.gradient *= per_unit / units_.norm;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal.squared_jacobian);
-    const Eigen::VectorXd along = eigen.eigenvectors().transpose() * normal.gradient;
+    const numerics::Eigendecomposition eigen = numerics::symmetric_eigen(normal.squared_jacobian);
+    const Eigen::VectorXd along = eigen.vectors.transpose() * normal.gradient;
     Eigen::Map<Jacobian> jacobian(jacobians[0], unknowns + 1, unknowns);
     jacobian.setZero();
-    const double least = kRounding * eigen.eigenvalues().maxCoeff();
+    const double least = kRounding * eigen.values.maxCoeff();
     for (int k = 0; k < unknowns; ++k) {
-      const double value = eigen.eigenvalues()[k];
+      const double value = eigen.values[k];
       if (!(value > least)) continue;
-      jacobian.row(k) = std::sqrt(value) * eigen.eigenvectors().col(k).transpose();
+      jacobian.row(k) = std::sqrt(value) * eigen.vectors.col(k).transpose();
       out[k] = along[k] / std::sqrt(value);
     }
     out[unknowns] = std::sqrt(std::max(0.0, norm * norm - out.head(unknowns).squaredNorm()));

@@ -579,7 +579,7 @@ TEST(Solve, MoreLightsThanAreNeededLeaveNoMore) {
 // What no light makes leaves each objective something else: each is met best by those who ask for it.
 TEST(Solve, EachObjectiveIsMetBestByThoseWhoAskForIt) {
   const PaintedCorner corner;
-  Target target = corner.target(known_lights(1), -1);
+  Target target = corner.target(known_lights(1), 0);
   target.standard_error.clear();
   std::vector<float> brightness;
   for (const Vec3f value : target.illumination) brightness.push_back(max_component(value));
@@ -593,7 +593,7 @@ TEST(Solve, EachObjectiveIsMetBestByThoseWhoAskForIt) {
     options.important_vertices = 1000;
     options.verification_samples = 128;
     options.objective = objective;
-    return solve(problem_of(corner, target, -1), options).illumination;
+    return solve(problem_of(corner, target, 0), options).illumination;
   };
   const auto error_of = [&](Objective objective, const std::vector<Vec3f>& illumination) {
     const ReceiverDraw all = draw_evenly(target, target.receivers.size());

@@ -24,7 +24,11 @@ constexpr double kAllMemory = std::numeric_limits<double>::infinity();
 
 class BakeFile : public ::testing::Test {
  protected:
-  BakeFile() { bake_as({}, "whole.exr"); }
+  // Baked once for all tests, each of which has it in its folder.
+  BakeFile() {
+    static const std::string baked = read_file(bake_as({}, "whole.exr"));
+    folder_.write("whole.exr", baked);
+  }
 
   fs::path bake_as(const BakeFileOptions& options, const std::string& name, double memory = kAllMemory,
                    const renderer::Control& control = {}) const {
@@ -188,12 +192,10 @@ TEST_F(BakeFile, GoesOnFromTilesOfAnySize) {
   for (const auto& [width, height] : kTilings) {
     test::retile(folder_ / "whole.exr", folder_ / "retiled.exr", width, height);
     const std::string bytes = read_file(folder_ / "retiled.exr");
-    for (const double part : {0.4, 1.0}) {
-      std::ofstream(unfinished_bake(file), std::ios::binary)
-          << bytes.substr(0, std::size_t(part * double(bytes.size())));
-      bake_as({.shard = {}, .resume = true}, "resumed.exr");
-      EXPECT_EQ(read_file(file), whole()) << width << " x " << height << ", " << part;
-    }
+    const double part = width < height ? 0.4 : 1;
+    std::ofstream(unfinished_bake(file), std::ios::binary) << bytes.substr(0, std::size_t(part * double(bytes.size())));
+    bake_as({.shard = {}, .resume = true}, "resumed.exr");
+    EXPECT_EQ(read_file(file), whole()) << width << " x " << height << ", " << part;
   }
 }
 
