@@ -147,8 +147,7 @@ class Search {
 
   // Where the rules of places have them, if they have room for all.
   void keep_as_it_is(LightEstimates lights) {
-    std::vector<Eigen::Vector3d> positions;
-    for (const LightEstimate& light : lights) positions.push_back(light.position);
+    std::vector<Eigen::Vector3d> positions = positions_of(lights);
     if (!response_.places().settle(positions)) return;
     for (std::size_t j = 0; j < lights.size(); ++j) lights[j].position = positions[j];
     const std::vector<Column> columns = evaluate_columns(response_, lights, Evaluation::kTracedVisibility);

@@ -31,9 +31,7 @@ std::optional<LightSet> with_one_more(const RegionSearch& searched, const FillUp
   if (more.size() != lights.size() + 1) return std::nullopt;
   const double error = searched.error_in_curve(more, by_held_out);
   if (error <= set.relative_l2) return set_of(more, error);
-  std::vector<Eigen::Vector3d> others;
-  for (const LightEstimate& light : lights) others.push_back(light.position);
-  if (!searched.response.places().has_room(more.back().position, others)) return set_of(more, error);
+  if (!searched.response.places().has_room(more.back().position, positions_of(lights))) return set_of(more, error);
   lights.push_back({more.back().position, Eigen::Array3d::Zero()});
   light_the_dark(lights);
   return set_of(lights, set.relative_l2);

@@ -15,12 +15,6 @@ constexpr double kShare = 1e-5;       // of the brightest light, for a light tha
 constexpr std::size_t kStarts = 12;   // of all arrangements from scratch
 constexpr std::size_t kFarthest = 8;  // places that are tried beside lights that make room
 
-std::vector<Vector3d> positions_of(const LightEstimates& lights) {
-  std::vector<Vector3d> positions;
-  for (const LightEstimate& light : lights) positions.push_back(light.position);
-  return positions;
-}
-
 class FillingUp {
  public:
   FillingUp(const LightResponse& response, const Observations& observations, const FillUpLimits& limits)

@@ -86,6 +86,12 @@ std::vector<Vec3f> light_positions(const LightEstimates& lights) {
   return positions;
 }
 
+std::vector<Eigen::Vector3d> positions_of(const LightEstimates& lights) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const LightEstimate& light : lights) positions.push_back(light.position);
+  return positions;
+}
+
 void Observations::measure_target() {
   target_norm = (sqrt_weight.asDiagonal() * target).norm();
   noise = target_norm > 0 ? std::sqrt(3.0) * sqrt_weight.cwiseProduct(standard_error).norm() / target_norm : 0;

@@ -73,6 +73,7 @@ renderer::PointLight point_light(const LightEstimate& estimate);
 renderer::Lights point_lights(const LightEstimates& estimates);
 LightEstimates light_estimates(const std::vector<renderer::PointLight>& lights);
 std::vector<Vec3f> light_positions(const LightEstimates& lights);
+std::vector<Eigen::Vector3d> positions_of(const LightEstimates& lights);
 
 // ‖ weighted column times intensity ‖: the light's contribution (3.5).
 double contribution_norm(const Observations& observations, const Column& column, const Eigen::Array3d& intensity);

@@ -36,9 +36,8 @@ LightEstimates joined(LightEstimates some, const LightEstimates& others) {
 
 // At the nearest places where they may stand, and as bright as they may be, where rules say anything of that.
 LightEstimates kept_to_rules(const LightResponse& response, const Observations& ruled, LightEstimates lights) {
-  std::vector<Eigen::Vector3d> positions;
-  for (const LightEstimate& light : lights) positions.push_back(light.position);
-  const std::vector<Eigen::Vector3d> before = positions;
+  const std::vector<Eigen::Vector3d> before = positions_of(lights);
+  std::vector<Eigen::Vector3d> positions = before;
   const bool moved = response.places().settle(positions) && positions != before;
   if (lights.empty() || !(moved || ruled.rules.any())) return lights;
   for (std::size_t j = 0; j < lights.size(); ++j) lights[j].position = positions[j];

@@ -277,8 +277,7 @@ JointRefinement refine_joint(const LightResponse& response, const Observations& 
     result.error = relative_error(observations, Column::Zero(observations.wanted.rows(), 3));
     return result;
   }
-  std::vector<Eigen::Vector3d> positions;
-  for (const LightEstimate& light : start) positions.push_back(light.position);
+  std::vector<Eigen::Vector3d> positions = positions_of(start);
   if (!response.places().settle(positions)) {
     result.error = std::numeric_limits<double>::infinity();
     return result;

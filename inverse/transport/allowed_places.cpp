@@ -56,11 +56,11 @@ double clearance_of(const Mount& mount, const renderer::Scene& scene) {
     refuse(scene, mount.asked_in, fmt::format("a clearance of {:g} m", *mount.clearance),
            fmt::format("at most {:g} m", renderer::kWorldLimit));
   }
-  return mount.clearance ? *mount.clearance : kDefaultClearance * double(surface_bounds(scene).diagonal());
+  return mount.clearance ? *mount.clearance : kDefaultClearance * double(renderer::bounds(scene).diagonal());
 }
 
 double tolerance_of(double clearance, const renderer::Scene& scene) {
-  const double rounding = std::min(kHangingAt, kHangingPart * double(surface_bounds(scene).diagonal()));
+  const double rounding = std::min(kHangingAt, kHangingPart * double(renderer::bounds(scene).diagonal()));
   return std::max(kHanging * clearance, rounding);
 }
 
@@ -71,10 +71,8 @@ double tolerance_of(double clearance, const renderer::Scene& scene) {
          "a distance to surfaces no larger than the clearance");
 }
 
-Box3f bounds_of(const Mount& mount, const renderer::Scene& scene) { return surface_bounds(scene, mount.node); }
-
 void check_node(const Mount& mount, const renderer::Scene& scene) {
-  if (!bounds_of(mount, scene).empty()) return;
+  if (!renderer::bounds_of_node(scene, mount.node).empty()) return;
   refuse(scene, mount.asked_in,
          fmt::format("no node with a mesh, or above one, to hang lights on is named \"{}\"", mount.node),
          "a node's name");
@@ -103,10 +101,10 @@ NoUsableGrid no_place(const renderer::Scene& scene, const PlaceRules& rules) {
 
 LightGridOptions around_places(LightGridOptions grid, const renderer::Scene& scene, const PlaceRules& rules) {
   grid.parts = rules.boxes;
-  if (!rules.mounts.empty()) grid.region = surface_bounds(scene);
+  if (!rules.mounts.empty()) grid.region = renderer::bounds(scene);
   for (const Mount& mount : rules.mounts) {
     check_node(mount, scene);
-    grid.parts.push_back(grown(bounds_of(mount, scene), clearance_of(mount, scene)));
+    grid.parts.push_back(grown(renderer::bounds_of_node(scene, mount.node), clearance_of(mount, scene)));
   }
   for (const Box3f& part : grid.parts) {
     if (!grid.region) grid.region.emplace();

@@ -279,12 +279,7 @@ Box3f parse_region(const renderer::Scene& scene, const Region& region) {
     refuse(scene, asked_in, within ? "is a single point" : "reaches too far",
            fmt::format("a box of some extent, within {:g} m of the origin", renderer::kWorldLimit));
   }
-  Box3f box;
-  for (const renderer::Instance& instance : scene.instances) {
-    if (!belongs_to(scene, instance, text)) continue;
-    for (const Vec3f& p : scene.meshes[instance.mesh].positions)
-      box.extend(transform_point(instance.world_from_object, p));
-  }
+  const Box3f box = renderer::bounds_of_node(scene, text);
   if (box.empty()) {
     refuse(scene, asked_in, fmt::format("no node with a mesh, or above one, is named \"{}\"", text),
            "a node's name, or x0,y0,z0,x1,y1,z1 in metres");

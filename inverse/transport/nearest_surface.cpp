@@ -24,20 +24,6 @@ bool lies_on(const OpenEdges& open, const Vector3d& weights) {
 
 }  // namespace
 
-renderer::Box3f surface_bounds(const renderer::Scene& scene, const std::optional<std::string>& node) {
-  renderer::Box3f bounds;
-  for (const renderer::Instance& instance : scene.instances) {
-    if (node && !belongs_to(scene, instance, *node)) continue;
-    const renderer::Mesh& mesh = scene.meshes[instance.mesh];
-    for (const renderer::Triangle& triangle : mesh.triangles) {
-      for (const auto corner : triangle) {
-        bounds.extend(transform_point(instance.world_from_object, mesh.positions[corner]));
-      }
-    }
-  }
-  return bounds;
-}
-
 NearestSurface::NearestSurface(const renderer::Scene& scene, const std::optional<std::string>& node) {
   std::vector<renderer::Box3f> boxes;
   for (const renderer::Instance& instance : scene.instances) {

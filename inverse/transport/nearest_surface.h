@@ -21,10 +21,6 @@ struct NearestPoint {
   bool on_open_edge = false;  // the surface of a node ends here; not looked for on the whole scene
 };
 
-// Of all drawn surfaces of the scene, or those of the node's instances and of the nodes below it; empty where there are
-// none.
-renderer::Box3f surface_bounds(const renderer::Scene& scene, const std::optional<std::string>& node = {});
-
 class NearestSurface {
  public:
   // All drawn surfaces of the scene, or those of the node's instances and of the nodes below it.

@@ -62,6 +62,13 @@ void add(Fingerprint& f, const Texture& texture) {
   if (is_wide(texture)) add(f, texture.wide_rgba);
 }
 
+void extend_around(const Scene& scene, const Instance& instance, Box3f& box) {
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) box.extend(transform_point(instance.world_from_object, mesh.positions[v]));
+  }
+}
+
 }  // namespace
 
 bool belongs_to(const Scene& scene, const Instance& instance, const std::string& name) {
@@ -74,11 +81,14 @@ bool belongs_to(const Scene& scene, const Instance& instance, const std::string&
 
 Box3f bounds(const Scene& scene) {
   Box3f box;
+  for (const Instance& instance : scene.instances) extend_around(scene, instance, box);
+  return box;
+}
+
+Box3f bounds_of_node(const Scene& scene, const std::string& name) {
+  Box3f box;
   for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    for (const Triangle& triangle : mesh.triangles) {
-      for (const std::uint32_t v : triangle) box.extend(transform_point(instance.world_from_object, mesh.positions[v]));
-    }
+    if (belongs_to(scene, instance, name)) extend_around(scene, instance, box);
   }
   return box;
 }

@@ -94,7 +94,10 @@ struct Scene {
 // Whether it is called so, or a node is that it hangs on.
 bool belongs_to(const Scene& scene, const Instance& instance, const std::string& name);
 
-Box3f bounds(const Scene& scene);  // world, over all instances' vertices; empty for a scene without triangles
+// World, over all instances' triangles; empty where there are none.
+Box3f bounds(const Scene& scene);
+// The same over those of instances that belong to a node.
+Box3f bounds_of_node(const Scene& scene, const std::string& name);
 
 // Fingerprint of all that light transport depends on: geometry, instances, materials, textures; not cameras.
 std::string fingerprint(const Scene& scene);

@@ -23,7 +23,6 @@ using Eigen::Vector3d;
 using tests::DirectProblem;
 using tests::farthest_from;
 using tests::known_lights;
-using tests::positions_of;
 
 double spacing_of(const DirectProblem& problem) { return double(max_component(problem.response().grid().spacing)); }
 

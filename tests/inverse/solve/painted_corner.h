@@ -114,10 +114,4 @@ inline double farthest_from(const LightEstimates& known, const std::vector<Vecto
   return farthest;
 }
 
-inline std::vector<Vector3d> positions_of(const LightEstimates& lights) {
-  std::vector<Vector3d> positions;
-  for (const LightEstimate& l : lights) positions.push_back(l.position);
-  return positions;
-}
-
 }  // namespace chiaro::inverse::tests

@@ -11,7 +11,6 @@ using tests::bake_settings;
 using tests::farthest_from;
 using tests::known_lights;
 using tests::PaintedCorner;
-using tests::positions_of;
 
 constexpr int kFreshSamples = 1024;
 constexpr double kPrecise = 0.008;  // metres: what the noise of target and trace leave, root mean square over seeds

@@ -111,7 +111,7 @@ TEST_F(Places, HangOnSurfacesNotBesideTheirRims) {
   EXPECT_FALSE(places.contains({2 + 0.15 * std::sin(0.9), 0.15 * std::cos(0.9), 1}));
 
   const AllowedPlaces around(scene_, bounds_, {.mounts = {{scene_.instances.back().name, 0.15}}});
-  const Vector3d middle = to_eigen(surface_bounds(scene_, scene_.instances.back().name).center());
+  const Vector3d middle = to_eigen(renderer::bounds_of_node(scene_, scene_.instances.back().name).center());
   for (std::uint32_t k = 0; k < 100; ++k) {
     const Vector3d from = random_position(k), place = *around.nearest(from);
     EXPECT_GT((place - middle).normalized().dot((from - middle).normalized()), 0.99) << k;

@@ -186,7 +186,7 @@ TEST(ParseRegion, TakesAllThatHangsOnANode) {
   EXPECT_NEAR(parse_region(scene, {"lamps"}).extent().x, 10 + 2 * kBallRadius, 0.02F);
   EXPECT_NEAR(parse_region(scene, {"one"}).extent().x, 10 + 2 * kBallRadius, 0.02F);
   EXPECT_NEAR(parse_region(scene, {"other"}).extent().x, 2 * kBallRadius, 0.02F);
-  EXPECT_NEAR(surface_bounds(scene, "lamps").extent().x, 10 + 2 * kBallRadius, 0.02F);
+  EXPECT_NEAR(renderer::bounds_of_node(scene, "lamps").extent().x, 10 + 2 * kBallRadius, 0.02F);
 }
 
 TEST(ParseRegion, RefusesAFlatNode) {
