@@ -8,9 +8,9 @@
 namespace chiaro::cli {
 namespace {
 
-bool parse_model(const std::string& text) {
-  if (text == "diffuse") return true;
-  if (text == "gltf") return false;
+renderer::MaterialModel parse_model(const std::string& text) {
+  if (text == "diffuse") return renderer::MaterialModel::kDiffuse;
+  if (text == "gltf") return renderer::MaterialModel::kGltf;
   throw UsageError(fmt::format("'{}' (expected gltf or diffuse)", text));
 }
 
@@ -20,7 +20,7 @@ void add_material_options(CLI::App& command, MaterialOptions& options) {
   add_parsed(command,
              {"--materials", "MODEL",
               "gltf, or diffuse: Lambert of the base colour, textures filtered as stored (default gltf)"},
-             [&options](const std::string& text) { options.diffuse = parse_model(text); });
+             [&options](const std::string& text) { options.model = parse_model(text); });
   add_parsed(command, {"--albedo", "R[,G,B]", "Every surface a Lambert of this albedo, 0 to 1"},
              [&options](const std::string& text) { options.albedo = parse_albedo(text); });
 }
@@ -31,13 +31,12 @@ void add_hide_backs(CLI::App& command, MaterialOptions& options) {
 }
 
 renderer::MaterialOverride material_override(const MaterialOptions& options) {
-  return {options.diffuse ? renderer::MaterialModel::kDiffuse : renderer::MaterialModel::kGltf, options.albedo,
-          options.hide_backs};
+  return {options.model.value_or(renderer::MaterialModel::kGltf), options.albedo, options.hide_backs};
 }
 
 std::string text_of_materials(const MaterialOptions& options) {
   if (options.albedo) return fmt::format("albedo {},{},{}", options.albedo->x, options.albedo->y, options.albedo->z);
-  return options.diffuse ? "diffuse" : "gltf";
+  return options.model == renderer::MaterialModel::kDiffuse ? "diffuse" : "gltf";
 }
 
 }  // namespace chiaro::cli

@@ -13,7 +13,7 @@ namespace chiaro::cli {
 
 // --materials and --albedo, and --hide-backs.
 struct MaterialOptions {
-  bool diffuse = false;
+  std::optional<renderer::MaterialModel> model;  // as given
   std::optional<renderer::Vec3f> albedo;
   bool hide_backs = false;
 };

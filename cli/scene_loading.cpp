@@ -42,6 +42,9 @@ std::vector<std::pair<std::filesystem::path, FileVersion>> versions_of_files(con
 
 LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& load, const MaterialOptions& materials,
                        Session& session) {
+  if (materials.albedo && materials.model == renderer::MaterialModel::kGltf) {
+    session.warn("--materials gltf: does nothing with --albedo");
+  }
   auto files = versions_of_files(path);
   renderer::LoadedScene loaded = renderer::load_gltf(path, load, session.control());
   session.warn(loaded.warnings);

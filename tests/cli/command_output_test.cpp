@@ -276,6 +276,16 @@ TEST(CliBake, AnEnvironmentIsToldToDoNothing) {
   expect_told(baked, "--environment: does nothing in a bake, which is the same under any environment");
 }
 
+TEST(CliBake, MaterialsThatAnAlbedoReplacesAreToldToDoNothing) {
+  const TemporaryFolder folder;
+  const std::string told = "--materials gltf: does nothing with --albedo";
+  const auto outcome = [&](const std::string& model) {
+    return bake(folder, "cache.exr", {"--max-edge", "1", "--materials", model, "--albedo", "0.5"}).outcome;
+  };
+  expect_told(outcome("gltf"), told);
+  EXPECT_EQ(outcome("diffuse").standard_error.find(told), std::string::npos);
+}
+
 TEST(CliSolve, OptionsThatACacheOrATargetFileLeavesIdleAreTold) {
   const TemporaryFolder folder;
   const std::string scene = kScenes + "cornell.glb", target = folder / "target.glb";
