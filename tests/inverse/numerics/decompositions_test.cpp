@@ -1,5 +1,7 @@
 #include "inverse/numerics/decompositions.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace {

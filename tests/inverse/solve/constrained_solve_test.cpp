@@ -104,13 +104,13 @@ TEST_F(ConstrainedSolve, NoChannelIsBrighterThanAllowed) {
 // the channel that takes most of them.
 TEST_F(ConstrainedSolve, ManyDimLightsStandForFewBrightOnes) {
   SolveProblem ruled = problem(target_);
-  ruled.intensities.max_intensity = 3;
+  ruled.intensities.max_intensity = 2;
   SolveOptions many = options();
-  many.max_lights = 8;
+  many.max_lights = 12;
   const SolveResult result = solve(ruled, many);
-  EXPECT_GE(result.lights.size(), 6U);
+  EXPECT_GE(result.lights.size(), 9U);
   EXPECT_LT(result.relative_l2, 0.15);  // 0.25 where each had to explain a fifth
-  for (const auto& light : lights_of(result)) EXPECT_LE(double(max_component(light.intensity)), 3);
+  for (const auto& light : lights_of(result)) EXPECT_LE(double(max_component(light.intensity)), 2);
 }
 
 // What the important vertices make of lights close to surfaces may be half of what the whole target does.
