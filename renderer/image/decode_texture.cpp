@@ -19,18 +19,18 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
-constexpr std::string_view kAvifName = "texture.avif";
+constexpr std::string_view kSamples = "samples", kHeif = "heif";  // decoded here; read from files only
 
-// The name of a file of the format that the bytes begin like; empty: none that textures come in.
-std::string file_name_for(std::string_view encoded) {
+// The format that the bytes begin like, by OpenImageIO's name of it; empty: none that textures come in.
+std::string_view format_of(std::string_view encoded) {
   const auto begins = [&](std::string_view magic, std::size_t at = 0) {
     return encoded.size() >= at + magic.size() && encoded.substr(at, magic.size()) == magic;
   };
-  if (has_samples(encoded)) return "texture";
-  if (begins("\xff\xd8\xff")) return "texture.jpg";
-  if (begins("ftypavif", 4) || begins("ftypavis", 4)) return std::string(kAvifName);
-  if (begins("BM")) return "texture.bmp";
-  if (begins("DDS ")) return "texture.dds";
+  if (has_samples(encoded)) return kSamples;
+  if (is_jpeg(encoded)) return "jpeg";
+  if (begins("ftypavif", 4) || begins("ftypavis", 4)) return kHeif;
+  if (begins("BM")) return "bmp";
+  if (begins("DDS ")) return "dds";
   return "";
 }
 
@@ -128,38 +128,39 @@ Texture decode_samples_texture(std::string_view encoded, const std::string& labe
   return hold_bytes(wide) ? texture(narrowed(wide)) : texture(std::move(wide));
 }
 
-// Its reader wants a file.
-Texture decode_avif(std::string_view encoded, const OIIO::ImageSpec& config, const std::string& label) {
-  const MemoryFile file(encoded);
-  const auto input = OIIO::ImageInput::create("heif");
+// By the reader of that format alone: whichever else OpenImageIO tries may read a file that happens to have the name.
+Texture decode_by(std::string_view format, const std::string& path, const OIIO::ImageSpec& config,
+                  std::size_t encoded_bytes, const std::string& label) {
+  const auto input = OIIO::ImageInput::create(std::string(format));
   OIIO::ImageSpec spec;
-  if (!input) fail(label, "cannot be decoded: this OpenImageIO has no AVIF");
-  if (!input->open(file.path(), spec, config))
+  if (!input) fail(label, fmt::format("cannot be decoded: this OpenImageIO has no reader of {}", format));
+  if (!input->open(path, spec, config)) {
     fail(label, fmt::format("cannot be decoded: {}", reason(input->geterror())));
-  return decoded_texture(*input, encoded.size(), label);
+  }
+  return decoded_texture(*input, encoded_bytes, label);
 }
 
-Texture decode(std::string_view encoded, const std::string& name, const std::string& label) {
-  if (has_samples(encoded)) return decode_samples_texture(encoded, label);
+Texture decode(std::string_view encoded, std::string_view format, const std::string& label) {
+  if (format == kSamples) return decode_samples_texture(encoded, label);
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
-  if (name == kAvifName) return decode_avif(encoded, config, label);
+  if (format == kHeif) {
+    const MemoryFile file(encoded);
+    return decode_by(format, file.path(), config, encoded.size(), label);
+  }
   OIIO::Filesystem::IOMemReader reader(const_cast<char*>(encoded.data()), encoded.size());
-  // Some readers take the proxy from their configuration only.
   OIIO::Filesystem::IOProxy* proxy = &reader;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(name, &config, proxy);
-  if (!input) fail(label, fmt::format("cannot be decoded: {}", reason(OIIO::geterror())));
-  return decoded_texture(*input, encoded.size(), label);
+  return decode_by(format, label, config, encoded.size(), label);
 }
 
 }  // namespace
 
 Texture decode_texture(std::string_view encoded, const std::string& label) {
-  const std::string name = file_name_for(encoded);
-  if (name.empty()) fail(label, "is in a format that is not read here");
-  if (const auto damage = find_jpeg_damage(encoded)) fail(label, *damage);
-  Texture texture = read_through_library(label, [&] { return decode(encoded, name, label); });
+  const std::string_view format = format_of(encoded);
+  if (format.empty()) fail(label, "is in a format that is not read here");
+  if (const auto damage = find_damage(encoded)) fail(label, *damage);
+  Texture texture = read_through_library(label, [&] { return decode(encoded, format, label); });
   texture.name = label;
   return texture;
 }

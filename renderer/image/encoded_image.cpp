@@ -1,5 +1,7 @@
 #include "renderer/image/encoded_image.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace chiaro::renderer {
@@ -17,11 +19,8 @@ std::size_t end_of_scan(std::string_view bytes, std::size_t at) {
   return bytes.size();
 }
 
-}  // namespace
-
 // ITU-T T.81 (JPEG), annex B: segments up to the end of the image.
-std::optional<std::string> find_jpeg_damage(std::string_view bytes) {
-  if (!bytes.starts_with("\xff\xd8\xff")) return std::nullopt;
+std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
   constexpr std::uint32_t kStartOfScan = 0xDA, kEndOfImage = 0xD9;
   std::size_t at = 2;
   while (at + 4 <= bytes.size() || (at + 2 <= bytes.size() && byte_at(bytes, at + 1) == kEndOfImage)) {
@@ -38,6 +37,27 @@ std::optional<std::string> find_jpeg_damage(std::string_view bytes) {
     if (code == kStartOfScan) at = end_of_scan(bytes, at);
   }
   return "is truncated";
+}
+
+// The size of its second header says which one it is: OS/2's first, then Windows' in the order of their making.
+std::optional<std::string> damage_of_bmp(std::string_view bytes) {
+  constexpr std::array<std::uint32_t, 6> kSizes{12, 40, 52, 56, 108, 124};
+  constexpr std::size_t kAt = 14;
+  if (bytes.size() < kAt + 4) return "is truncated";
+  const std::uint32_t size = byte_at(bytes, kAt) | byte_at(bytes, kAt + 1) << 8 | byte_at(bytes, kAt + 2) << 16 |
+                             byte_at(bytes, kAt + 3) << 24;
+  if (std::find(kSizes.begin(), kSizes.end(), size) == kSizes.end()) return "is corrupt";
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_jpeg(std::string_view first_bytes) { return first_bytes.starts_with("\xff\xd8\xff"); }
+
+std::optional<std::string> find_damage(std::string_view bytes) {
+  if (is_jpeg(bytes)) return damage_of_jpeg(bytes);
+  if (bytes.starts_with("BM")) return damage_of_bmp(bytes);
+  return std::nullopt;
 }
 
 bool may_hold(std::uintmax_t file_bytes, std::uintmax_t pixel_bytes) {

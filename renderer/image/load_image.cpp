@@ -11,7 +11,6 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
-#include "renderer/core/file_extension.h"
 #include "renderer/core/first_line.h"
 #include "renderer/image/decode_samples.h"
 #include "renderer/image/decode_webp.h"
@@ -65,15 +64,17 @@ void append_attribute(Attributes& attributes, const OIIO::ParamValue& value, boo
   if (floats == 16) attributes.emplace_back(name, floats_of<16>(value));
 }
 
-// Of a PNG or a WebP, which are decoded here; empty: it is neither.
-std::string bytes_to_decode(const std::filesystem::path& path) {
-  std::string first(12, 0);
-  std::ifstream(path, std::ios::binary).read(first.data(), std::streamsize(first.size()));
-  return has_samples(first) ? read_file(path) : "";
+// Enough of them to say what the file is.
+std::string first_bytes(const std::filesystem::path& path) {
+  std::string first(18, 0);
+  std::ifstream file(path, std::ios::binary);
+  file.read(first.data(), std::streamsize(first.size()));
+  first.resize(std::size_t(file.gcount()));
+  return first;
 }
 
 struct OpenImage {
-  std::string encoded;  // all bytes of a PNG or a WebP
+  std::string encoded;  // all bytes of a PNG or a WebP, which are decoded here
   SamplesHeader header{};
   std::unique_ptr<OIIO::Filesystem::IOProxy> reader{};
   std::unique_ptr<OIIO::ImageInput> input{};
@@ -102,42 +103,53 @@ int choose_part(OIIO::ImageInput& input) {
 // OpenImageIO takes what comes after a question mark for options.
 bool has_plain_name(const std::filesystem::path& path) { return path.native().find('?') == std::string::npos; }
 
-// By which OpenImageIO knows the kind of what is read through a reader.
-std::string name_to_open(const OpenImage& image, const std::filesystem::path& path) {
-  if (image.reader == nullptr) return path.string();
-  if (image.encoded.empty()) return "image" + path.extension().string();
-  return is_webp(image.encoded) ? "image.webp" : "image.png";
-}
-
-// Their header is known to be right before OpenImageIO sees it, and so are the bytes.
-OpenImage open(const std::filesystem::path& path) {
-  require_file(path, "an image");
-  OpenImage image{bytes_to_decode(path)};
+// Some damage OpenImageIO takes for a picture, or for a size to take memory by: it is found before it sees the file.
+OpenImage undamaged(const std::filesystem::path& path) {
+  const std::string first = first_bytes(path);
+  OpenImage image{has_samples(first) ? read_file(path) : ""};
   if (!image.encoded.empty()) {
     image.header = read_samples_header(image.encoded, path.string());
     image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
-  } else if (has_extension(path, {".jpg", ".jpeg"})) {
-    if (const auto damage = find_jpeg_damage(read_file(path))) {
-      throw Error({path.string(), "", *damage, "a whole image"});
-    }
+    return image;
   }
-  if (image.encoded.empty() && !has_plain_name(path)) {
+  if (!has_plain_name(path)) {
     image.reader = std::make_unique<OIIO::Filesystem::IOFile>(path.string(), OIIO::Filesystem::IOProxy::Read);
   }
-  if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole image"});
+  std::optional<std::string> damage = find_damage(is_jpeg(first) ? read_file(path) : first);
+  if (!damage) damage = find_exr_header_damage(path);
+  if (damage) throw Error({path.string(), "", *damage, "a whole image"});
+  return image;
+}
+
+// By which OpenImageIO knows the kind of what is read through a reader. No file can have the name: what damage keeps
+// the reader of that kind from is tried by others, some of which look for a file.
+std::string name_to_open(const OpenImage& image, const std::filesystem::path& path) {
+  if (image.reader == nullptr) return path.string();
+  const std::string nowhere = "/dev/null/image";
+  if (image.encoded.empty()) return nowhere + path.extension().string();
+  return nowhere + (is_webp(image.encoded) ? ".webp" : ".png");
+}
+
+std::unique_ptr<OIIO::ImageInput> open_input(const OpenImage& image, const std::filesystem::path& path) {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
   if (OIIO::Filesystem::IOProxy* reader = image.reader.get()) {
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &reader);  // its reader of PNG looks here alone
   }
-  image.input = OIIO::ImageInput::open(name_to_open(image, path), &config, image.reader.get());
-  if (!image.input) {
-    const std::string reason = first_line(OIIO::geterror());
-    const bool known = reason.find("could not find a format reader") == std::string::npos;
-    throw Error({path.string(), "",
-                 known ? fmt::format("is not an image that can be read: {}", reason) : "is of no kind that is known",
-                 "an image"});
-  }
+  const std::string name = name_to_open(image, path);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name, &config, image.reader.get());
+  if (input) return input;
+  const std::string reason = OIIO::Strutil::replace(first_line(OIIO::geterror()), name, path.string(), true);
+  const bool known = reason.find("could not find a format reader") == std::string::npos;
+  throw Error({path.string(), "",
+               known ? fmt::format("is not an image that can be read: {}", reason) : "is of no kind that is known",
+               "an image"});
+}
+
+OpenImage open(const std::filesystem::path& path) {
+  require_file(path, "an image");
+  OpenImage image = undamaged(path);
+  image.input = open_input(image, path);
   image.part = choose_part(*image.input);
   if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);
   return image;

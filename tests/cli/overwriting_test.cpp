@@ -6,7 +6,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "tests/cli/run_with.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/working_folder.h"
 
 namespace chiaro::cli {
 namespace {
@@ -26,11 +26,9 @@ struct Overwriting {
 class CliOverwriting : public testing::Test {
  protected:
   CliOverwriting() {
-    fs::current_path(folder_.path());
     fs::copy_file(kScenes + "cornell.glb", "s.glb");
     for (const char* folder : {"results/frames", "results/pictures", "report"}) fs::create_directories(folder);
   }
-  ~CliOverwriting() override { fs::current_path(before_); }
 
   static Outcome run(const std::string& command) {
     std::istringstream words(command);
@@ -51,10 +49,7 @@ class CliOverwriting : public testing::Test {
     EXPECT_NE(words.find(" of this command"), std::string::npos) << over.command << ": " << words;
   }
 
-  test::TemporaryFolder folder_;
-
- private:
-  const fs::path before_ = fs::current_path();
+  test::WorkingFolder folder_;
 };
 
 TEST_F(CliOverwriting, EveryOptionThatNamesAnInputKeepsIt) {

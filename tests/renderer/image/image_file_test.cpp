@@ -190,26 +190,6 @@ TEST(PngFile, MoreChannelsThanItHoldsAreRefused) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-class DamagedImage : public testing::TestWithParam<const char*> {};
-
-TEST_P(DamagedImage, IsRefusedWhereverItIsCut) {
-  const TemporaryFolder folder;
-  Image image = make_image(64, 64, {"R", "G", "B"});
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i * i % 251) / 251;
-  const auto path = folder / (std::string("whole") + GetParam());
-  save_image(image, path, std::string(GetParam()) == ".exr" ? PixelType::kHalf : PixelType::kUint8);
-  const std::string whole = renderer::read_file(path);
-  for (const double fraction : {0.0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98}) {
-    const auto cut =
-        folder.write(std::string("cut") + GetParam(), whole.substr(0, std::size_t(fraction * double(whole.size()))));
-    const std::string message = error_of([&] { load_image(cut); });
-    EXPECT_NE(message.find("cut"), std::string::npos) << fraction;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Formats, DamagedImage, testing::Values(".exr", ".png", ".jpg"), test::kByText);
-
 TEST(ImageFile, WhatIsNotAnImageIsRefused) {
   const TemporaryFolder folder;
   EXPECT_NE(error_of([&] { load_image(folder / "not there.exr"); }).find("no such file"), std::string::npos);
