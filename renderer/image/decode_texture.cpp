@@ -38,11 +38,6 @@ std::string_view format_of(std::string_view encoded) {
   throw Error({label, "", problem, "a PNG, JPEG, WebP or AVIF image"});
 }
 
-std::string reason(const std::string& text) {
-  const std::string line = first_line(text);
-  return line.empty() ? "the decoder gives no reason" : line;
-}
-
 // What an image says it has, beside the bytes that it is encoded in.
 struct Size {
   std::int64_t width, height, depth, channels;
@@ -61,8 +56,8 @@ std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, std::size_t encod
   const OIIO::ImageSpec& spec = input.spec();
   check_size({spec.width, spec.height, spec.depth, spec.nchannels, spec.image_bytes(true)}, encoded_bytes, label);
   std::vector<std::uint8_t> texels(std::size_t(spec.width) * spec.height * spec.nchannels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data())) {
-    fail(label, fmt::format("cannot be decoded: {}", reason(input.geterror())));
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data()) || input.has_error()) {
+    fail(label, fmt::format("cannot be decoded: {}", first_line(input.geterror())));
   }
   return texels;
 }
@@ -135,7 +130,7 @@ Texture decode_by(std::string_view format, const std::string& path, const OIIO::
   OIIO::ImageSpec spec;
   if (!input) fail(label, fmt::format("cannot be decoded: this OpenImageIO has no reader of {}", format));
   if (!input->open(path, spec, config)) {
-    fail(label, fmt::format("cannot be decoded: {}", reason(input->geterror())));
+    fail(label, fmt::format("cannot be decoded: {}", first_line(input->geterror())));
   }
   return decoded_texture(*input, encoded_bytes, label);
 }

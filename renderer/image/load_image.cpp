@@ -243,10 +243,27 @@ void decode_pixels(const OpenImage& open, const std::string& file, Image& image)
                       image.pixels.data(), OIIO::TypeFloat, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
 }
 
+// OpenImageIO 2.4 takes strips of a TIFF for read whatever is wrong with them, and tiles that several threads decode: a
+// picture whose rest is missing would be black there. Of single lines and by one thread it says so.
+bool read_tiff(OIIO::ImageInput& input, Image& image) {
+  input.threads(1);
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.tile_width > 0)
+    return input.read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data());
+  for (int y = 0; y < image.height; ++y) {
+    if (!input.read_scanline(spec.y + y, 0, OIIO::TypeFloat, image.at(0, y))) return false;
+  }
+  return true;
+}
+
 void read_pixels(OpenImage& open, const std::string& file, Image& image) {
   if (!open.encoded.empty()) return decode_pixels(open, file, image);
-  if (open.input->read_image(open.part, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data())) return;
-  throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(open.input->geterror())), "a whole file"});
+  OIIO::ImageInput& input = *open.input;
+  const bool read = has_format(input, "tiff") ? read_tiff(input, image)
+                                              : input.read_image(open.part, 0, 0, image.channel_count(),
+                                                                 OIIO::TypeFloat, image.pixels.data());
+  if (read && !input.has_error()) return;
+  throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(input.geterror())), "a whole file"});
 }
 
 // The whole picture: black and transparent where there are no pixels of it, without those beyond its edges.

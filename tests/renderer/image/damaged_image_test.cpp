@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <vector>
+
 #include "renderer/core/atomic_file.h"
 #include "renderer/image/image_file.h"
 #include "tests/support/error_of.h"
@@ -35,7 +38,8 @@ TEST_P(CutImage, IsRefusedWhereverItIsCut) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, CutImage, testing::Values(".exr", ".png", ".jpg"), test::kByText);
+INSTANTIATE_TEST_SUITE_P(Formats, CutImage, testing::Values(".exr", ".png", ".jpg", ".tif", ".webp", ".hdr"),
+                         test::kByText);
 
 // NASA, Definition of the Flexible Image Transport System: 8 x 8 samples.
 std::string fits() {
@@ -84,6 +88,79 @@ TEST(DamagedImage, ATruncatedJpegIsRefusedWhateverItsName) {
     EXPECT_EQ(load_image(name).image.width, 64) << name;
     folder.write(name, whole.substr(0, whole.size() / 2));
     EXPECT_EQ(error_of([&] { load_image(name); }), std::string(name) + ": is truncated (expected a whole image)");
+  }
+}
+
+// Of 64 x 48 pixels, 8 bits each of RGB, with the directory before them, as many programs write it and we do not.
+// Source: Aldus, TIFF 6.0, sections 2 and 15.
+class TiffBytes {
+ public:
+  // Strips of that many lines, or tiles of that size, whose pixels are all 200.
+  static std::string of_strips(std::uint32_t lines) { return TiffBytes(64, lines, {278, lines}, 273, 279).bytes_; }
+  static std::string of_tiles(std::uint32_t size) { return TiffBytes(size, size, {323, size}, 324, 325).bytes_; }
+
+ private:
+  TiffBytes(std::uint32_t width, std::uint32_t height, std::pair<std::uint16_t, std::uint32_t> lines,
+            std::uint16_t offsets_tag, std::uint16_t sizes_tag) {
+    const std::uint32_t count = 64 / width * (48 / height), size = 3 * width * height;
+    std::map<std::uint16_t, std::vector<std::uint32_t>> tags{
+        {256, {64}}, {257, {48}}, {258, {8, 8, 8}}, {259, {1}},
+        {262, {2}},  {277, {3}},  {284, {1}},       {lines.first, {lines.second}}};
+    if (width < 64) tags[322] = {width};
+    tags[sizes_tag].assign(count, size);
+    tags[offsets_tag].resize(count);
+    const std::uint32_t lists = 8 + 2 + 12 * std::uint32_t(tags.size()) + 4;
+    std::uint32_t listed = 0;
+    for (const auto& [tag, values] : tags) listed += values.size() > 1 ? 4 * std::uint32_t(values.size()) : 0;
+    for (std::uint32_t i = 0; i < count; ++i) tags[offsets_tag][i] = lists + listed + i * size;
+
+    bytes_ = "II*";
+    bytes_ += '\0';
+    number(8), number(tags.size(), 2);
+    std::string list;
+    for (const auto& [tag, values] : tags) {
+      number(tag, 2), number(4, 2), number(values.size());
+      number(values.size() > 1 ? lists + list.size() : values[0]);
+      if (values.size() > 1) list += TiffBytes(values).bytes_;
+    }
+    number(0);
+    bytes_ += list + std::string(std::size_t(count) * size, '\xc8');
+  }
+  explicit TiffBytes(const std::vector<std::uint32_t>& values) {
+    for (const std::uint32_t value : values) number(value);
+  }
+
+  void number(std::size_t value, int bytes = 4) {
+    for (int i = 0; i < bytes; ++i) bytes_ += char(value >> 8 * i & 0xff);
+  }
+
+  std::string bytes_;
+};
+
+// OpenImageIO 2.4 takes pixels that are not there for read.
+TEST(DamagedImage, ATiffWithoutAllOfItsPixelsIsRefused) {
+  const test::TemporaryFolder folder;
+  for (const std::string& whole : {TiffBytes::of_strips(48), TiffBytes::of_strips(8), TiffBytes::of_tiles(16)}) {
+    const Image image = load_image(folder.write("whole.tif", whole)).image;
+    ASSERT_EQ(image.height, 48);
+    for (const float value : image.pixels) ASSERT_FLOAT_EQ(value, 200.0F / 255);
+    for (const std::size_t missing : {1, 700, 5000, 9000}) {
+      const auto cut = folder.write("cut.tif", whole.substr(0, whole.size() - missing));
+      EXPECT_NE(error_of([&] { load_image(cut); }).find("cut.tif: pixels: cannot be read"), std::string::npos)
+          << missing;
+    }
+  }
+}
+
+TEST(DamagedImage, ATiffWhosePixelsCannotBeUnpackedIsRefused) {
+  const test::TemporaryFolder folder;
+  for (const PixelType type : {PixelType::kUint8, PixelType::kFloat}) {
+    const auto path = folder / "picture.tif";
+    save_image(busy_image(), path, type);
+    std::string bytes = read_file(path);
+    bytes.replace(bytes.size() / 2, 100, std::string(100, 'U'));
+    folder.write("picture.tif", bytes);
+    EXPECT_NE(error_of([&] { load_image(path); }).find("picture.tif: pixels: cannot be read"), std::string::npos);
   }
 }
 
