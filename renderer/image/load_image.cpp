@@ -243,13 +243,19 @@ void decode_pixels(const OpenImage& open, const std::string& file, Image& image)
                       image.pixels.data(), OIIO::TypeFloat, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
 }
 
-// OpenImageIO 2.4 takes strips of a TIFF for read whatever is wrong with them, and tiles that several threads decode: a
-// picture whose rest is missing would be black there. Of single lines and by one thread it says so.
-bool read_tiff(OIIO::ImageInput& input, Image& image) {
+// OpenImageIO 2.4 takes deflated strips of a TIFF for read whatever is wrong with them, and tiles that several threads
+// decode: a picture whose rest is missing would be black there. Of single lines, which it has of 8 and 16 bits, and by
+// one thread it says so; of other strips, too, as an error of what it says it has read. Tiles of other sizes it keeps.
+bool read_tiff(OIIO::ImageInput& input, const std::string& file, Image& image) {
   input.threads(1);
   const OIIO::ImageSpec& spec = input.spec();
-  if (spec.tile_width > 0)
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample", int(8 * spec.format.size()));
+  if (spec.tile_width > 0 && bits > 16 && bits != 32) {
+    throw Error({file, "pixels", fmt::format("are tiles with samples of {} bits", bits), "up to 16 bits or 32"});
+  }
+  if (spec.tile_width > 0 || spec.format.size() > 2) {
     return input.read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data());
+  }
   for (int y = 0; y < image.height; ++y) {
     if (!input.read_scanline(spec.y + y, 0, OIIO::TypeFloat, image.at(0, y))) return false;
   }
@@ -259,7 +265,7 @@ bool read_tiff(OIIO::ImageInput& input, Image& image) {
 void read_pixels(OpenImage& open, const std::string& file, Image& image) {
   if (!open.encoded.empty()) return decode_pixels(open, file, image);
   OIIO::ImageInput& input = *open.input;
-  const bool read = has_format(input, "tiff") ? read_tiff(input, image)
+  const bool read = has_format(input, "tiff") ? read_tiff(input, file, image)
                                               : input.read_image(open.part, 0, 0, image.channel_count(),
                                                                  OIIO::TypeFloat, image.pixels.data());
   if (read && !input.has_error()) return;
