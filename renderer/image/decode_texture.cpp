@@ -19,19 +19,10 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
-constexpr std::string_view kSamples = "samples", kHeif = "heif";  // decoded here; read from files only
-
-// The format that the bytes begin like, by OpenImageIO's name of it; empty: none that textures come in.
-std::string_view format_of(std::string_view encoded) {
-  const auto begins = [&](std::string_view magic, std::size_t at = 0) {
-    return encoded.size() >= at + magic.size() && encoded.substr(at, magic.size()) == magic;
-  };
-  if (has_samples(encoded)) return kSamples;
-  if (is_jpeg(encoded)) return "jpeg";
-  if (begins("ftypavif", 4) || begins("ftypavis", 4)) return kHeif;
-  if (begins("BM")) return "bmp";
-  if (begins("DDS ")) return "dds";
-  return "";
+// Of those that are read here, the ones that textures come in.
+bool is_of_textures(std::string_view format) {
+  return format == "png" || format == "jpeg" || format == "webp" || format == "heif" || format == "bmp" ||
+         format == "dds";
 }
 
 [[noreturn]] void fail(const std::string& label, const std::string& problem) {
@@ -123,7 +114,7 @@ Texture decode_samples_texture(std::string_view encoded, const std::string& labe
   return hold_bytes(wide) ? texture(narrowed(wide)) : texture(std::move(wide));
 }
 
-// By the reader of that format alone: whichever else OpenImageIO tries may read a file that happens to have the name.
+// By the reader of that format alone: others that OpenImageIO would try read a file that happens to have the name.
 Texture decode_by(std::string_view format, const std::string& path, const OIIO::ImageSpec& config,
                   std::size_t encoded_bytes, const std::string& label) {
   const auto input = OIIO::ImageInput::create(std::string(format));
@@ -136,10 +127,10 @@ Texture decode_by(std::string_view format, const std::string& path, const OIIO::
 }
 
 Texture decode(std::string_view encoded, std::string_view format, const std::string& label) {
-  if (format == kSamples) return decode_samples_texture(encoded, label);
+  if (has_samples(encoded)) return decode_samples_texture(encoded, label);
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
-  if (format == kHeif) {
+  if (format == "heif") {  // read from files only
     const MemoryFile file(encoded);
     return decode_by(format, file.path(), config, encoded.size(), label);
   }
@@ -153,8 +144,8 @@ Texture decode(std::string_view encoded, std::string_view format, const std::str
 
 Texture decode_texture(std::string_view encoded, const std::string& label) {
   const std::string_view format = format_of(encoded);
-  if (format.empty()) fail(label, "is in a format that is not read here");
-  if (const auto damage = find_damage(encoded)) fail(label, *damage);
+  if (!is_of_textures(format)) fail(label, "is in a format that is not read here");
+  if (const auto damage = find_damage(format, encoded)) fail(label, *damage);
   Texture texture = read_through_library(label, [&] { return decode(encoded, format, label); });
   texture.name = label;
   return texture;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
+
+#include "renderer/core/file_extension.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -22,6 +25,7 @@ std::size_t end_of_scan(std::string_view bytes, std::size_t at) {
 // ITU-T T.81 (JPEG), annex B: segments up to the end of the image.
 std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
   constexpr std::uint32_t kStartOfScan = 0xDA, kEndOfImage = 0xD9;
+  if (!bytes.starts_with("\xff\xd8\xff")) return "is not a JPEG";
   std::size_t at = 2;
   while (at + 4 <= bytes.size() || (at + 2 <= bytes.size() && byte_at(bytes, at + 1) == kEndOfImage)) {
     const std::uint32_t code = byte_at(bytes, at + 1);
@@ -43,6 +47,7 @@ std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
 std::optional<std::string> damage_of_bmp(std::string_view bytes) {
   constexpr std::array<std::uint32_t, 6> kSizes{12, 40, 52, 56, 108, 124};
   constexpr std::size_t kAt = 14;
+  if (!bytes.starts_with("BM")) return "is not a BMP";
   if (bytes.size() < kAt + 4) return "is truncated";
   const std::uint32_t size = byte_at(bytes, kAt) | byte_at(bytes, kAt + 1) << 8 | byte_at(bytes, kAt + 2) << 16 |
                              byte_at(bytes, kAt + 3) << 24;
@@ -50,13 +55,64 @@ std::optional<std::string> damage_of_bmp(std::string_view bytes) {
   return std::nullopt;
 }
 
+// Truevision, TGA File Format Specification 2.0: images of types 1 and 9 are indices.
+std::optional<std::string> damage_of_tga(std::string_view bytes) {
+  constexpr std::size_t kTypeAt = 2;
+  if (bytes.size() <= kTypeAt) return "is truncated";
+  if (bytes[kTypeAt] == 1 || bytes[kTypeAt] == 9) return "has a palette";
+  return std::nullopt;
+}
+
+struct Signature {
+  std::string_view format, bytes;
+  std::size_t at = 0;
+};
+
+constexpr Signature kSignatures[] = {
+    {"openexr", "\x76\x2f\x31\x01"},
+    {"png", "\x89PNG\r\n\x1a\n"},
+    {"jpeg", "\xff\xd8\xff"},
+    {"tiff", std::string_view("II\x2a\0", 4)},
+    {"tiff", std::string_view("MM\0\x2a", 4)},
+    {"tiff", std::string_view("II\x2b\0", 4)},  // BigTIFF
+    {"tiff", std::string_view("MM\0\x2b", 4)},
+    {"hdr", "#?"},
+    {"webp", "WEBP", 8},
+    {"heif", "ftypavif", 4},
+    {"heif", "ftypavis", 4},
+    {"heif", "ftypheic", 4},
+    {"heif", "ftypmif1", 4},
+    {"bmp", "BM"},
+    {"dpx", "SDPX"},
+    {"dpx", "XPDS"},
+    {"dds", "DDS "},
+    {"psd", "8BPS"},
+};
+
+constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
+    {".exr", "openexr"}, {".png", "png"}, {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},
+    {".tiff", "tiff"},   {".hdr", "hdr"}, {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"},
+    {".tga", "targa"},   {".bmp", "bmp"}, {".dpx", "dpx"},   {".dds", "dds"},   {".psd", "psd"},
+    {".ppm", "pnm"},     {".pgm", "pnm"}, {".pfm", "pnm"},   {".pnm", "pnm"},   {".pbm", "pnm"},
+};
+
 }  // namespace
 
-bool is_jpeg(std::string_view first_bytes) { return first_bytes.starts_with("\xff\xd8\xff"); }
+std::string_view format_of(std::string_view first_bytes, const std::filesystem::path& name) {
+  for (const Signature& signature : kSignatures) {
+    const bool reaches = first_bytes.size() >= signature.at + signature.bytes.size();
+    if (reaches && first_bytes.substr(signature.at).starts_with(signature.bytes)) return signature.format;
+  }
+  for (const auto& [extension, format] : kExtensions) {
+    if (has_extension(name, {std::string(extension)})) return format;
+  }
+  return "";
+}
 
-std::optional<std::string> find_damage(std::string_view bytes) {
-  if (is_jpeg(bytes)) return damage_of_jpeg(bytes);
-  if (bytes.starts_with("BM")) return damage_of_bmp(bytes);
+std::optional<std::string> find_damage(std::string_view format, std::string_view bytes) {
+  if (format == "jpeg") return damage_of_jpeg(bytes);
+  if (format == "bmp") return damage_of_bmp(bytes);
+  if (format == "targa") return damage_of_tga(bytes);
   return std::nullopt;
 }
 

@@ -2,19 +2,26 @@
 // What can be told about an encoded image without decoding it.
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace chiaro::renderer {
 
-// Whether a file with these first bytes is a JPEG.
-bool is_jpeg(std::string_view first_bytes);
+// So many of its first bytes say which format a picture has.
+constexpr std::size_t kFormatBytes = 18;
 
-// What is wrong with a JPEG whose bytes are not all there or not all right, whose decoder fills with grey what is not
-// there, or with a BMP whose header is of no kind that there is, which OpenImageIO takes without having read it. Absent
-// where nothing is, and for other formats. Of a BMP the first 18 bytes are enough.
-std::optional<std::string> find_damage(std::string_view encoded);
+// The format that a picture with these first bytes has, by OpenImageIO's name of it; empty: none that is read here.
+// Formats without a signature are told by the name's extension (".tga"), and so is what a file of another content was
+// meant to be.
+std::string_view format_of(std::string_view first_bytes, const std::filesystem::path& name = {});
+
+// What is wrong with a picture of that format that its decoder takes nevertheless: a JPEG whose bytes are not all there
+// or not all right, filled up with grey; a BMP whose header is of no kind that there is, taken without having been
+// read; a TGA with a palette, whatever entries its pixels have. Absent where nothing is, and for other formats. Of a
+// JPEG it takes all bytes, of others the first ones.
+std::optional<std::string> find_damage(std::string_view format, std::string_view bytes);
 
 // Whether a file of `file_bytes` may hold so many bytes of pixels. No picture of any use is packed tighter, but for
 // those that memory has room for anyway.

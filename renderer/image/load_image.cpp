@@ -13,7 +13,6 @@
 #include "renderer/core/error.h"
 #include "renderer/core/first_line.h"
 #include "renderer/image/decode_samples.h"
-#include "renderer/image/decode_webp.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/exr_header.h"
 #include "renderer/image/image_file.h"
@@ -26,6 +25,9 @@ namespace {
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 31;
 constexpr std::int64_t kMaxPadded = std::int64_t{1} << 27;  // pixels of a picture that there is only a part of
+
+constexpr const char* kFormats =
+    "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, BMP, TGA, DPX, PSD, DDS or PNM picture";
 
 // OpenImageIO renames some of OpenEXR's attributes on reading; these are the names as the file has them.
 std::string exr_name(const std::string& name) {
@@ -64,9 +66,8 @@ void append_attribute(Attributes& attributes, const OIIO::ParamValue& value, boo
   if (floats == 16) attributes.emplace_back(name, floats_of<16>(value));
 }
 
-// Enough of them to say what the file is.
 std::string first_bytes(const std::filesystem::path& path) {
-  std::string first(18, 0);
+  std::string first(kFormatBytes, 0);
   std::ifstream file(path, std::ios::binary);
   file.read(first.data(), std::streamsize(first.size()));
   first.resize(std::size_t(file.gcount()));
@@ -74,7 +75,8 @@ std::string first_bytes(const std::filesystem::path& path) {
 }
 
 struct OpenImage {
-  std::string encoded;  // all bytes of a PNG or a WebP, which are decoded here
+  std::string_view format;  // OpenImageIO's name of it
+  std::string encoded{};    // all bytes of a PNG or a WebP, which are decoded here
   SamplesHeader header{};
   std::unique_ptr<OIIO::Filesystem::IOProxy> reader{};
   std::unique_ptr<OIIO::ImageInput> input{};
@@ -100,55 +102,37 @@ int choose_part(OIIO::ImageInput& input) {
   return 0;
 }
 
-// OpenImageIO takes what comes after a question mark for options.
-bool has_plain_name(const std::filesystem::path& path) { return path.native().find('?') == std::string::npos; }
-
-// Some damage OpenImageIO takes for a picture, or for a size to take memory by: it is found before it sees the file.
-OpenImage undamaged(const std::filesystem::path& path) {
-  const std::string first = first_bytes(path);
-  OpenImage image{has_samples(first) ? read_file(path) : ""};
-  if (!image.encoded.empty()) {
-    image.header = read_samples_header(image.encoded, path.string());
-    image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
-    return image;
-  }
-  if (!has_plain_name(path)) {
-    image.reader = std::make_unique<OIIO::Filesystem::IOFile>(path.string(), OIIO::Filesystem::IOProxy::Read);
-  }
-  std::optional<std::string> damage = find_damage(is_jpeg(first) ? read_file(path) : first);
-  if (!damage) damage = find_exr_header_damage(path);
-  if (damage) throw Error({path.string(), "", *damage, "a whole image"});
-  return image;
-}
-
-// By which OpenImageIO knows the kind of what is read through a reader. No file can have the name: what damage keeps
-// the reader of that kind from is tried by others, some of which look for a file.
-std::string name_to_open(const OpenImage& image, const std::filesystem::path& path) {
-  if (image.reader == nullptr) return path.string();
-  const std::string nowhere = "/dev/null/image";
-  if (image.encoded.empty()) return nowhere + path.extension().string();
-  return nowhere + (is_webp(image.encoded) ? ".webp" : ".png");
-}
-
+// By the reader of that format alone: others that OpenImageIO would try may take anything for a picture.
 std::unique_ptr<OIIO::ImageInput> open_input(const OpenImage& image, const std::filesystem::path& path) {
-  OIIO::ImageSpec config;
+  OIIO::ImageSpec config, spec;
   config["oiio:UnassociatedAlpha"] = 1;
   if (OIIO::Filesystem::IOProxy* reader = image.reader.get()) {
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &reader);  // its reader of PNG looks here alone
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &reader);
   }
-  const std::string name = name_to_open(image, path);
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name, &config, image.reader.get());
-  if (input) return input;
-  const std::string reason = OIIO::Strutil::replace(first_line(OIIO::geterror()), name, path.string(), true);
-  const bool known = reason.find("could not find a format reader") == std::string::npos;
-  throw Error({path.string(), "",
-               known ? fmt::format("is not an image that can be read: {}", reason) : "is of no kind that is known",
+  auto input = OIIO::ImageInput::create(std::string(image.format));
+  if (!input) {
+    throw Error(
+        {path.string(), "", fmt::format("is {}, which this OpenImageIO does not read", image.format), "an image"});
+  }
+  if (input->open(path.string(), spec, config)) return input;
+  throw Error({path.string(), "", fmt::format("is not an image that can be read: {}", first_line(input->geterror())),
                "an image"});
 }
 
+// Some damage is taken for a picture, or for a size to take memory by: it is found before OpenImageIO sees the file.
 OpenImage open(const std::filesystem::path& path) {
   require_file(path, "an image");
-  OpenImage image = undamaged(path);
+  const std::string first = first_bytes(path);
+  OpenImage image{format_of(first, path)};
+  if (image.format.empty()) throw Error({path.string(), "", "is of no kind that is known", kFormats});
+  if (has_samples(first)) {
+    image.encoded = read_file(path);
+    image.header = read_samples_header(image.encoded, path.string());
+    image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
+  }
+  std::optional<std::string> damage = find_damage(image.format, image.format == "jpeg" ? read_file(path) : first);
+  if (!damage) damage = find_exr_header_damage(path);
+  if (damage) throw Error({path.string(), "", *damage, "a whole image"});
   image.input = open_input(image, path);
   image.part = choose_part(*image.input);
   if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);
