@@ -47,6 +47,7 @@ void warn_of_darkness(const LoadedStage& stage, const renderer::Lights& lights, 
 // The header of the frame has --shutter and --iso all the same.
 void warn_of_idle_options(const RenderCommand& options, Session& session) {
   session.warn(idle_view_options(*options.command, {"--preview"}, {"--output-space", "--environment", "--lights"}));
+  session.warn(idle_frame_options(*options.command, options.transport.bounces));
   if (options.frame.lens.shutter && !options.preview) session.warn("--shutter: exposes nothing without --preview");
 }
 

@@ -201,6 +201,7 @@ int run_run(RunCommand options) {
   session.require_outputs_in(options.folder(), picture_files(cameras));
   warn_of_scene_lights(stage, options.choices, session);
   session.warn(idle_target_options(*options.command));
+  session.warn(idle_frame_options(*options.command, options.choices.transport.bounces));
   const WantedTarget wanted = load_wanted_target(stage, options.choices.target, session);
   const inverse::Target& target = wanted.target;
   inverse::SolveProblem problem = solve_problem(stage, target, options.choices, options.common, session);

@@ -152,6 +152,11 @@ void require_color_choices(const FrameOptions& options, bool preview) {
   renderer::require_linear_space(renderer::find_ocio_config(options.view.config), options.output_space);
 }
 
+std::vector<std::string> idle_frame_options(const CLI::App& command, std::optional<int> bounces) {
+  if (bounces != 0) return {};
+  return given_for_nothing(command, {"--clamp-indirect"}, "with --bounces 0");
+}
+
 void require_frame(const renderer::Camera& camera, const FrameOptions& options) {
   frame_size(camera, options.size);
   require_lens(options.lens, camera);

@@ -46,6 +46,9 @@ void require_frame(const renderer::Camera& camera, const FrameOptions& options);
 // two options expose the preview.
 void require_color_choices(const FrameOptions& options, bool preview);
 
+// Warnings of what was given and does nothing in frames of so many bounces.
+std::vector<std::string> idle_frame_options(const CLI::App& command, std::optional<int> bounces);
+
 // The frame as the options want it.
 renderer::Frame render_frame(const renderer::RayTracer& tracer, const renderer::Camera& camera,
                              const renderer::Lights& lights, const FrameOptions& options, const FrameRun& run);

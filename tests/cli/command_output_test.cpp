@@ -286,6 +286,17 @@ TEST(CliBake, MaterialsThatAnAlbedoReplacesAreToldToDoNothing) {
   EXPECT_EQ(outcome("diffuse").standard_error.find(told), std::string::npos);
 }
 
+TEST(CliRender, ABoundOnBouncesIsToldToDoNothingWhereThereAreNone) {
+  const TemporaryFolder folder;
+  const std::string told = "--clamp-indirect: does nothing with --bounces 0";
+  const auto outcome = [&](const std::string& bounces) {
+    return run_with({"render", kScenes + "cornell.glb", "-o", folder / "frame.exr", "--width", "8", "--samples", "1",
+                     "--bounces", bounces, "--clamp-indirect", "9"});
+  };
+  expect_told(outcome("0"), told);
+  EXPECT_EQ(outcome("1").standard_error.find(told), std::string::npos);
+}
+
 TEST(CliSolve, OptionsThatACacheOrATargetFileLeavesIdleAreTold) {
   const TemporaryFolder folder;
   const std::string scene = kScenes + "cornell.glb", target = folder / "target.glb";
