@@ -83,8 +83,6 @@ constexpr Signature kSignatures[] = {
     {"heif", "ftypheic", 4},
     {"heif", "ftypmif1", 4},
     {"bmp", "BM"},
-    {"dpx", "SDPX"},
-    {"dpx", "XPDS"},
     {"dds", "DDS "},
     {"psd", "8BPS"},
 };
@@ -92,8 +90,8 @@ constexpr Signature kSignatures[] = {
 constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {".exr", "openexr"}, {".png", "png"}, {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},
     {".tiff", "tiff"},   {".hdr", "hdr"}, {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"},
-    {".tga", "targa"},   {".bmp", "bmp"}, {".dpx", "dpx"},   {".dds", "dds"},   {".psd", "psd"},
-    {".ppm", "pnm"},     {".pgm", "pnm"}, {".pfm", "pnm"},   {".pnm", "pnm"},   {".pbm", "pnm"},
+    {".tga", "targa"},   {".bmp", "bmp"}, {".dds", "dds"},   {".psd", "psd"},   {".ppm", "pnm"},
+    {".pgm", "pnm"},     {".pfm", "pnm"}, {".pnm", "pnm"},   {".pbm", "pnm"},
 };
 
 }  // namespace
