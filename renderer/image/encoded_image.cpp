@@ -84,14 +84,12 @@ constexpr Signature kSignatures[] = {
     {"heif", "ftypmif1", 4},
     {"bmp", "BM"},
     {"dds", "DDS "},
-    {"psd", "8BPS"},
 };
 
 constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
-    {".exr", "openexr"}, {".png", "png"}, {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},
-    {".tiff", "tiff"},   {".hdr", "hdr"}, {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"},
-    {".tga", "targa"},   {".bmp", "bmp"}, {".dds", "dds"},   {".psd", "psd"},   {".ppm", "pnm"},
-    {".pgm", "pnm"},     {".pfm", "pnm"}, {".pnm", "pnm"},   {".pbm", "pnm"},
+    {".exr", "openexr"}, {".png", "png"},   {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},  {".tiff", "tiff"},
+    {".hdr", "hdr"},     {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"}, {".tga", "targa"}, {".bmp", "bmp"},
+    {".dds", "dds"},     {".ppm", "pnm"},   {".pgm", "pnm"},   {".pfm", "pnm"},   {".pnm", "pnm"},   {".pbm", "pnm"},
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ constexpr std::int64_t kMaxPixels = std::int64_t{1} << 31;
 constexpr std::int64_t kMaxPadded = std::int64_t{1} << 27;  // pixels of a picture that there is only a part of
 
 constexpr const char* kFormats =
-    "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, BMP, TGA, PSD, DDS or PNM picture";
+    "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, BMP, TGA, DDS or PNM picture";
 
 // OpenImageIO renames some of OpenEXR's attributes on reading; these are the names as the file has them.
 std::string exr_name(const std::string& name) {

@@ -349,16 +349,19 @@ TEST(ImageFile, SaysWhetherColoursAreMultipliedByAlpha) {
   }
 }
 
-// Others, of which OpenImageIO knows dozens, hold no picture that somebody would light a scene after, and their readers
-// trust what they read. This one's logical screen is a billion pixels, which OpenImageIO throws at.
+// Of the other formats that OpenImageIO knows the readers trust what files say: films, scans and documents take memory
+// as they like, and this one's logical screen is a billion pixels.
 TEST(ImageFile, KindsThatAreNotReadAreRefusedUnderAnyName) {
   const TemporaryFolder folder;
   const std::string gif(
       "GIF8`\0\0\x80SDDS P8 \0\0\0\0\xa6\x1f\x34\xc0\x30\x80?3\xff\xf5\xc5[\x97\x37text\xdf\x18\xc0\0\0", 43);
-  for (const char* name : {"image.gif", "image.null", "image", "image.exr", "image.jpg", "image.tga"}) {
-    const auto path = folder.write(name, gif);
-    EXPECT_NE(error_of([&] { load_image(path); }).find(name), std::string::npos);
-    EXPECT_NE(error_of([&] { renderer::load_image_header(path); }).find(name), std::string::npos);
+  const std::string psd("8BPS\0\1\0\0\0\0\0\0\0\3\0\0\0\4\0\0\0\5\0\10\0\3\xff\x2e\0\0", 30);
+  for (const char* name : {"image.gif", "image.psd", "image.null", "image", "image.exr", "image.jpg", "image.tga"}) {
+    for (const std::string& bytes : {gif, psd}) {
+      const auto path = folder.write(name, bytes);
+      EXPECT_NE(error_of([&] { load_image(path); }).find(name), std::string::npos);
+      EXPECT_NE(error_of([&] { renderer::load_image_header(path); }).find(name), std::string::npos);
+    }
   }
 }
 
