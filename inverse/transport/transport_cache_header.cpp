@@ -10,6 +10,7 @@
 
 #include "inverse/transport/number_ranges.h"
 #include "renderer/core/error.h"
+#include "renderer/core/world_limits.h"
 
 namespace chiaro::inverse {
 namespace {
@@ -145,6 +146,9 @@ LightGrid read_grid(const Header& header, const std::string& file, std::size_t r
   grid.origin = header.vector("grid_origin");
   grid.spacing = header.vector("grid_spacing");
   grid.counts = header.counts();
+  if (!in_world(grid.region.min) || !in_world(grid.region.max)) {
+    throw Error({file, "header", "the region of the lights reaches beyond the world", kNotACache});
+  }
   if (!fills_region(grid)) throw Error({file, "header", "the light grid does not fill its region", kNotACache});
   const std::size_t count = node_count(grid);
   if (count > kMostNodes) throw Error({file, "header", "chiaro:grid_counts is out of range", kNotACache});

@@ -19,10 +19,10 @@ namespace chiaro::renderer {
 namespace {
 
 constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
-// Of those that are read here, the ones that textures come in.
+
+// Of the formats that are read here, those that textures come in.
 bool is_of_textures(std::string_view format) {
-  return format == "png" || format == "jpeg" || format == "webp" || format == "heif" || format == "bmp" ||
-         format == "dds";
+  return format == "png" || format == "jpeg" || format == "webp" || format == "heif";
 }
 
 [[noreturn]] void fail(const std::string& label, const std::string& problem) {
@@ -47,8 +47,10 @@ std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, std::size_t encod
   const OIIO::ImageSpec& spec = input.spec();
   check_size({spec.width, spec.height, spec.depth, spec.nchannels, spec.image_bytes(true)}, encoded_bytes, label);
   std::vector<std::uint8_t> texels(std::size_t(spec.width) * spec.height * spec.nchannels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data()) || input.has_error()) {
-    fail(label, fmt::format("cannot be decoded: {}", first_line(input.geterror())));
+  const bool read = input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data());
+  const std::string message = input.geterror();
+  if (!read || (!message.empty() && tells_damage(input.format_name(), message))) {
+    fail(label, fmt::format("cannot be decoded: {}", first_line(message)));
   }
   return texels;
 }

@@ -1,9 +1,9 @@
 #include "renderer/image/encoded_image.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "renderer/core/file_extension.h"
 
@@ -43,23 +43,14 @@ std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
   return "is truncated";
 }
 
-// The size of its second header says which one it is: OS/2's first, then Windows' in the order of their making.
-std::optional<std::string> damage_of_bmp(std::string_view bytes) {
-  constexpr std::array<std::uint32_t, 6> kSizes{12, 40, 52, 56, 108, 124};
-  constexpr std::size_t kAt = 14;
-  if (!bytes.starts_with("BM")) return "is not a BMP";
-  if (bytes.size() < kAt + 4) return "is truncated";
-  const std::uint32_t size = byte_at(bytes, kAt) | byte_at(bytes, kAt + 1) << 8 | byte_at(bytes, kAt + 2) << 16 |
-                             byte_at(bytes, kAt + 3) << 24;
-  if (std::find(kSizes.begin(), kSizes.end(), size) == kSizes.end()) return "is corrupt";
-  return std::nullopt;
-}
-
 // Truevision, TGA File Format Specification 2.0: images of types 1 and 9 are indices.
 std::optional<std::string> damage_of_tga(std::string_view bytes) {
   constexpr std::size_t kTypeAt = 2;
-  if (bytes.size() <= kTypeAt) return "is truncated";
+  if (bytes.size() < kFormatBytes) return "is truncated";
+  constexpr std::size_t kDepthAt = 16;
+  const bool grey = bytes[kTypeAt] == 3 || bytes[kTypeAt] == 11;
   if (bytes[kTypeAt] == 1 || bytes[kTypeAt] == 9) return "has a palette";
+  if (!grey && byte_at(bytes, kDepthAt) < 15) return fmt::format("has colours of {} bits", byte_at(bytes, kDepthAt));
   return std::nullopt;
 }
 
@@ -80,16 +71,16 @@ constexpr Signature kSignatures[] = {
     {"webp", "WEBP", 8},
     {"heif", "ftypavif", 4},
     {"heif", "ftypavis", 4},
-    {"heif", "ftypheic", 4},
-    {"heif", "ftypmif1", 4},
-    {"bmp", "BM"},
-    {"dds", "DDS "},
+    {"heif", "ftyphe", 4},
+    {"heif", "ftypmif", 4},
+    {"heif", "ftypmiaf", 4},
+    {"heif", "ftypmsf1", 4},
 };
 
 constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {".exr", "openexr"}, {".png", "png"},   {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},  {".tiff", "tiff"},
-    {".hdr", "hdr"},     {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"}, {".tga", "targa"}, {".bmp", "bmp"},
-    {".dds", "dds"},     {".ppm", "pnm"},   {".pgm", "pnm"},   {".pfm", "pnm"},   {".pnm", "pnm"},   {".pbm", "pnm"},
+    {".hdr", "hdr"},     {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"}, {".heif", "heif"}, {".tga", "targa"},
+    {".ppm", "pnm"},     {".pgm", "pnm"},   {".pfm", "pnm"},   {".pnm", "pnm"},   {".pbm", "pnm"},
 };
 
 }  // namespace
@@ -107,9 +98,13 @@ std::string_view format_of(std::string_view first_bytes, const std::filesystem::
 
 std::optional<std::string> find_damage(std::string_view format, std::string_view bytes) {
   if (format == "jpeg") return damage_of_jpeg(bytes);
-  if (format == "bmp") return damage_of_bmp(bytes);
   if (format == "targa") return damage_of_tga(bytes);
   return std::nullopt;
+}
+
+bool tells_damage(std::string_view format, std::string_view message) {
+  const auto says = [&](std::string_view words) { return message.find(words) != std::string_view::npos; };
+  return format != "jpeg" || says("Corrupt JPEG data") || says("Premature end");
 }
 
 bool may_hold(std::uintmax_t file_bytes, std::uintmax_t pixel_bytes) {

@@ -17,11 +17,15 @@ constexpr std::size_t kFormatBytes = 18;
 // meant to be.
 std::string_view format_of(std::string_view first_bytes, const std::filesystem::path& name = {});
 
-// What is wrong with a picture of that format that its decoder takes nevertheless: a JPEG whose bytes are not all there
-// or not all right, filled up with grey; a BMP whose header is of no kind that there is, taken without having been
-// read; a TGA with a palette, whatever entries its pixels have. Absent where nothing is, and for other formats. Of a
-// JPEG it takes all bytes, of others the first ones.
+// What is wrong with a picture of that format that its reader takes nevertheless: a JPEG whose bytes are not all there
+// or not all right, filled up with grey; a TGA with a palette, whose pixels may refer to colours beyond it, or with
+// fewer bits than colours take. Absent where nothing is, and for other formats. Of a JPEG it takes all bytes, of others
+// the first ones.
 std::optional<std::string> find_damage(std::string_view format, std::string_view bytes);
+
+// Whether what a reader says of pixels that it has read is that they are not right. Of JPEGs it says much that is
+// harmless.
+bool tells_damage(std::string_view format, std::string_view message);
 
 // Whether a file of `file_bytes` may hold so many bytes of pixels. No picture of any use is packed tighter, but for
 // those that memory has room for anyway.

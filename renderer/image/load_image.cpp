@@ -26,8 +26,7 @@ namespace {
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 31;
 constexpr std::int64_t kMaxPadded = std::int64_t{1} << 27;  // pixels of a picture that there is only a part of
 
-constexpr const char* kFormats =
-    "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, BMP, TGA, DDS or PNM picture";
+constexpr const char* kFormats = "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, HEIC, TGA or PNM picture";
 
 // OpenImageIO renames some of OpenEXR's attributes on reading; these are the names as the file has them.
 std::string exr_name(const std::string& name) {
@@ -139,6 +138,16 @@ OpenImage open(const std::filesystem::path& path) {
   return image;
 }
 
+// OpenImageIO makes fractions of the most that there could be of whole numbers, which identify things.
+void check_color_types(const OIIO::ImageInput& input, const std::string& file) {
+  const OIIO::ImageSpec& spec = input.spec();
+  for (const char* const name : {"R", "G", "B"}) {
+    const int c = spec.channelindex(name);
+    if (!has_format(input, "openexr") || c < 0 || spec.channelformat(c).is_floating_point()) continue;
+    throw Error({file, std::string("channel ") + name, "has whole numbers", "half or full floats"});
+  }
+}
+
 void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
   const bool sensible = spec.width > 0 && spec.height > 0 && spec.nchannels > 0 && spec.depth <= 1 &&
                         std::int64_t(spec.width) * spec.height <= kMaxPixels / std::max(1, spec.nchannels / 4);
@@ -192,7 +201,7 @@ void require_same_shape(const OpenImage& open, const OIIO::ImageSpec& spec, cons
 
 // OpenImageIO does not say of all formats whose colours never are multiplied that they are not.
 bool has_associated_alpha(const OIIO::ImageSpec& spec, std::string_view format) {
-  if (spec.alpha_channel < 0 || format == "png" || format == "webp" || format == "bmp" || format == "ico") return false;
+  if (spec.alpha_channel < 0 || format == "png" || format == "webp") return false;
   return format == "openexr" || spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
@@ -201,6 +210,7 @@ ImageFile header_of(const OpenImage& open, const std::filesystem::path& path) {
   const OIIO::ImageSpec spec = picture_spec(input);
   check_size(spec, path.string());
   check_window(spec, path.string());
+  check_color_types(input, path.string());
   require_same_shape(open, spec, path.string());
   ImageFile file;
   file.image = Image{spec.full_width, spec.full_height, spec.channelnames, {}};
@@ -227,19 +237,34 @@ void decode_pixels(const OpenImage& open, const std::string& file, Image& image)
                       image.pixels.data(), OIIO::TypeFloat, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
 }
 
-// OpenImageIO 2.4 takes deflated strips of a TIFF for read whatever is wrong with them, and tiles that several threads
-// decode: a picture whose rest is missing would be black there. Of single lines, which it has of 8 and 16 bits, and by
-// one thread it says so; of other strips, too, as an error of what it says it has read. Tiles of other sizes it keeps.
-bool read_tiff(OIIO::ImageInput& input, const std::string& file, Image& image) {
-  input.threads(1);
-  const OIIO::ImageSpec& spec = input.spec();
+// What OpenImageIO 2.4 does not get right: pixels of other sizes and inverted ones are wrong, tiles of four inks
+// overrun their memory.
+void require_readable_tiff(const OIIO::ImageSpec& spec, const std::string& file) {
+  constexpr int kWhiteIsZero = 0;
   const int bits = spec.get_int_attribute("oiio:BitsPerSample", int(8 * spec.format.size()));
-  if (spec.tile_width > 0 && bits > 16 && bits != 32) {
-    throw Error({file, "pixels", fmt::format("are tiles with samples of {} bits", bits), "up to 16 bits or 32"});
+  const bool tiles = spec.tile_width > 0;
+  if (bits > 16 && bits != 32 && (bits != 64 || tiles)) {
+    throw Error({file, "pixels", fmt::format("have samples of {} bits", bits), "up to 16 bits or 32"});
   }
-  if (spec.tile_width > 0 || spec.format.size() > 2) {
-    return input.read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data());
+  const bool inverted = spec.get_int_attribute("tiff:PhotometricInterpretation", -1) == kWhiteIsZero;
+  if (inverted && (bits > 8 || spec.nchannels > 1)) {
+    throw Error({file, "pixels", "have white as zero", "black as zero, but for 8 bits of grey"});
   }
+  if (tiles && spec.get_string_attribute("tiff:ColorSpace") == "CMYK") {
+    throw Error({file, "pixels", "are tiles of four inks", "red, green and blue"});
+  }
+}
+
+// OpenImageIO 2.4 ignores what goes wrong in deflated strips that are read as a whole, and in tiles that several
+// threads read: a picture whose rest is missing would be black there. Line by line, or by one thread, it tells.
+bool read_tiff(OIIO::ImageInput& input, const std::string& file, Image& image) {
+  const OIIO::ImageSpec& spec = input.spec();
+  require_readable_tiff(spec, file);
+  input.threads(1);
+  const bool strips_untold = spec.tile_width == 0 && spec.format.size() <= 2 &&
+                             spec.get_string_attribute("compression") == "zip" &&
+                             spec.get_string_attribute("planarconfig") != "separate";
+  if (!strips_untold) return input.read_image(0, 0, 0, image.channel_count(), OIIO::TypeFloat, image.pixels.data());
   for (int y = 0; y < image.height; ++y) {
     if (!input.read_scanline(spec.y + y, 0, OIIO::TypeFloat, image.at(0, y))) return false;
   }
@@ -249,11 +274,12 @@ bool read_tiff(OIIO::ImageInput& input, const std::string& file, Image& image) {
 void read_pixels(OpenImage& open, const std::string& file, Image& image) {
   if (!open.encoded.empty()) return decode_pixels(open, file, image);
   OIIO::ImageInput& input = *open.input;
-  const bool read = has_format(input, "tiff") ? read_tiff(input, file, image)
-                                              : input.read_image(open.part, 0, 0, image.channel_count(),
-                                                                 OIIO::TypeFloat, image.pixels.data());
-  if (read && !input.has_error()) return;
-  throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(input.geterror())), "a whole file"});
+  const bool read = open.format == "tiff" ? read_tiff(input, file, image)
+                                          : input.read_image(open.part, 0, 0, image.channel_count(), OIIO::TypeFloat,
+                                                             image.pixels.data());
+  const std::string message = input.geterror();
+  if (read && (message.empty() || !tells_damage(open.format, message))) return;
+  throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(message)), "a whole file"});
 }
 
 // The whole picture: black and transparent where there are no pixels of it, without those beyond its edges.

@@ -41,6 +41,19 @@ Vec3f vec3_or(const std::vector<double>& values, Vec3f otherwise) {
   return values.empty() ? otherwise : Vec3f{float(values[0]), float(values[1]), float(values[2])};
 }
 
+// Transposed ones have their translation there.
+void check_matrix(const GltfDocument& document, std::size_t node) {
+  constexpr double kTolerance = 1e-5;
+  const std::vector<double>& matrix = document.model->nodes[node].matrix;
+  for (std::size_t column = 0; column < matrix.size() / 4; ++column) {
+    const double expected = column == 3 ? 1 : 0;
+    if (std::abs(matrix[4 * column + 3] - expected) <= kTolerance) continue;
+    fail(document, node_place(node) + ".matrix",
+         fmt::format("element {} is {:.6g}", 4 * column + 3, matrix[4 * column + 3]),
+         "0, 0, 0 and 1 as elements 3, 7, 11 and 15: columns, one after the other");
+  }
+}
+
 Mat4f local_transform(const tinygltf::Node& node) {
   if (node.matrix.empty()) {
     const Vec4f rotation = node.rotation.empty() ? Vec4f{0, 0, 0, 1} : unit_quaternion(node.rotation);
@@ -134,6 +147,7 @@ std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose
     const int i = waiting.back();
     waiting.pop_back();
     const NodePose* posed = find_pose(pose, i);
+    check_matrix(document, i);
     const Mat4f local = posed == nullptr ? local_transform(nodes[i]) : posed_transform(nodes[i], *posed);
     world[i] = parents[i] == kNoParent ? local : world[parents[i]] * local;
     if (!is_finite(world[i])) fail(document, node_place(i), "its transform is not finite", "finite numbers");

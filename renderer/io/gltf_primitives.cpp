@@ -118,6 +118,10 @@ std::vector<float> read_scalar_attribute(const GltfDocument& document, const Glt
 
 std::vector<Vec4f> read_colors(const GltfDocument& document, const GltfPrimitiveRef& ref) {
   const int accessor = checked_attribute(document, ref, "COLOR_0");
+  if (accessor >= 0 && !accessor_is_float(document, accessor) && !document.model->accessors[accessor].normalized) {
+    fail(document, attribute_place(ref, "COLOR_0"), "has whole numbers that are not normalized",
+         "floats or normalized ones");
+  }
   if (accessor < 0 || accessor_components(document, accessor) == 4) {
     return read_vec4_attribute(document, ref, "COLOR_0");
   }

@@ -291,6 +291,21 @@ TEST_F(TransportCacheFile, AnErrorBeyondAllFloatsIsWrittenAsTheLargest) {
   EXPECT_EQ(load_transport_cache(path()).indirect_relative_error, double(std::numeric_limits<float>::max()));
 }
 
+// Rays to there would have no direction.
+TEST_F(TransportCacheFile, RegionsBeyondTheWorldAreRefused) {
+  TransportCache cache = make_cache(1);
+  for (const float far : {1e8F, 1e19F, 1e30F}) {
+    cache.grid = {};
+    cache.grid.region = {{-far, -far, -far}, {far, far, far}};
+    cache.grid.counts = {1, 1, 1};
+    cache.grid.spacing = {2 * far, 2 * far, 2 * far};
+    cache.grid.light_of_node = {0};
+    const renderer::Attributes attributes = transport_cache_attributes(cache);
+    const std::string message = test::error_of([&] { transport_cache_from(attributes, 1, 1, "far.exr"); });
+    EXPECT_EQ(message.find("beyond the world") != std::string::npos, far > 1e9F) << message;
+  }
+}
+
 TEST_F(TransportCacheFile, MissingAttributesAreRefusedByName) {
   for (const char* name :
        {"kind", "format_version", "region_min", "grid_nodes", "scene_fingerprint", "indirect_scale"}) {

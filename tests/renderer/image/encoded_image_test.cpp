@@ -12,19 +12,6 @@ TEST(EncodedImage, AGigabyteIsNotInAKilobyte) {
   EXPECT_TRUE(may_hold(200'000, 1UL << 30));
 }
 
-std::string bmp_of_header(char size) {
-  return std::string("BM") + std::string(12, '\0') + size + std::string(200, '\0');
-}
-
-// OpenImageIO takes what it does not know for read, and its size for whatever memory had.
-TEST(EncodedImage, ABmpHasAHeaderOfAKindThatThereIs) {
-  for (const int size : {12, 40, 52, 56, 108, 124}) EXPECT_FALSE(find_damage("bmp", bmp_of_header(char(size)))) << size;
-  for (const int size : {0, 11, 16, 41, 64, 128})
-    EXPECT_EQ(find_damage("bmp", bmp_of_header(char(size))), "is corrupt") << size;
-  EXPECT_EQ(find_damage("bmp", bmp_of_header(40).substr(0, 17)), "is truncated");
-  EXPECT_FALSE(find_damage("bmp", bmp_of_header(40).substr(0, 18)));
-}
-
 TEST(EncodedImage, WhatItIsGoesByItsBytesAndThenByItsName) {
   const std::string jpeg = "\xff\xd8\xff\xe0 and so on";
   EXPECT_EQ(format_of(jpeg), "jpeg");
@@ -38,12 +25,24 @@ TEST(EncodedImage, WhatItIsGoesByItsBytesAndThenByItsName) {
   EXPECT_EQ(format_of("GIF89a", "picture.gif"), "");
 }
 
-// OpenImageIO reads what memory has behind the palette.
-TEST(EncodedImage, ATgaWithAPaletteIsRefused) {
-  const auto of_type = [](char type) { return std::string("\0\1", 2) + type + std::string(15, '\0'); };
-  for (const char type : {1, 9}) EXPECT_EQ(find_damage("targa", of_type(type)), "has a palette");
-  for (const char type : {2, 3, 10, 11}) EXPECT_FALSE(find_damage("targa", of_type(type)));
-  EXPECT_EQ(find_damage("targa", "\0"), "is truncated");
+// OpenImageIO reads what memory has behind the palette, and nothing of colours that have too few bits.
+TEST(EncodedImage, ATgaWithAPaletteOrWithTooFewBitsIsRefused) {
+  const auto tga = [](char type, char bits) {
+    return std::string("\0\1", 2) + type + std::string(13, '\0') + bits + '\0';
+  };
+  for (const char type : {1, 9}) EXPECT_EQ(find_damage("targa", tga(type, 8)), "has a palette");
+  for (const char type : {2, 10}) {
+    EXPECT_EQ(find_damage("targa", tga(type, 8)), "has colours of 8 bits");
+    for (const char bits : {15, 16, 24, 32}) EXPECT_FALSE(find_damage("targa", tga(type, bits)));
+  }
+  for (const char type : {3, 11}) EXPECT_FALSE(find_damage("targa", tga(type, 8)));
+  EXPECT_EQ(find_damage("targa", tga(2, 24).substr(0, 17)), "is truncated");
+}
+
+TEST(EncodedImage, WhatReadersSayOfAJpegIsMostlyHarmless) {
+  EXPECT_FALSE(tells_damage("jpeg", "JPEG error: Invalid SOS parameters for sequential JPEG"));
+  EXPECT_TRUE(tells_damage("jpeg", "JPEG error: Corrupt JPEG data: 5 extraneous bytes before marker 0xd9"));
+  EXPECT_TRUE(tells_damage("tiff", "anything"));
 }
 
 }  // namespace

@@ -71,6 +71,18 @@ const BadCase kBadCases[] = {
        g.root["nodes"][0]["matrix"] = {1, 2, 3};
      },
      "nodes[0].matrix"},
+    {"TransposedMatrix",
+     [](GltfBuilder& g) { g.root["nodes"][0]["matrix"] = {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1}; },
+     "nodes[0].matrix: element 3 is 5"},
+    {"MatrixThatDivides",
+     [](GltfBuilder& g) { g.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2}; },
+     "nodes[0].matrix: element 15 is 2"},
+    {"ColoursOfWholeNumbers",
+     [](GltfBuilder& g) {
+       g.primitive()["attributes"]["COLOR_0"] =
+           g.add_accessor<std::uint8_t>({1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0}, 4, kUnsignedByte);
+     },
+     "COLOR_0: has whole numbers that are not normalized"},
     {"HugeScale",
      [](GltfBuilder& g) {
        g.root["nodes"][0]["scale"] = {1e39, 1, 1};
