@@ -38,7 +38,7 @@ TEST_P(CutImage, IsRefusedWhereverItIsCut) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, CutImage, testing::Values(".exr", ".png", ".jpg", ".tif", ".webp", ".hdr", ".avif"),
+INSTANTIATE_TEST_SUITE_P(Formats, CutImage, testing::Values(".exr", ".png", ".jpg", ".tif", ".webp", ".hdr"),
                          test::kByText);
 
 // NASA, Definition of the Flexible Image Transport System: 8 x 8 samples.
