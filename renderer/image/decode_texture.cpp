@@ -49,7 +49,7 @@ std::vector<std::uint8_t> read_texels(OIIO::ImageInput& input, std::size_t encod
   std::vector<std::uint8_t> texels(std::size_t(spec.width) * spec.height * spec.nchannels);
   const bool read = input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt8, texels.data());
   const std::string message = input.geterror();
-  if (!read || (!message.empty() && tells_damage(input.format_name(), message))) {
+  if (!read || tells_damage(input.format_name(), message)) {
     fail(label, fmt::format("cannot be decoded: {}", first_line(message)));
   }
   return texels;

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "renderer/core/file_extension.h"
+#include "renderer/image/decode_png.h"
+#include "renderer/image/decode_webp.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -25,7 +27,7 @@ std::size_t end_of_scan(std::string_view bytes, std::size_t at) {
 // ITU-T T.81 (JPEG), annex B: segments up to the end of the image.
 std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
   constexpr std::uint32_t kStartOfScan = 0xDA, kEndOfImage = 0xD9;
-  if (!bytes.starts_with("\xff\xd8\xff")) return "is not a JPEG";
+  if (format_of(bytes) != "jpeg") return "is not a JPEG";
   std::size_t at = 2;
   while (at + 4 <= bytes.size() || (at + 2 <= bytes.size() && byte_at(bytes, at + 1) == kEndOfImage)) {
     const std::uint32_t code = byte_at(bytes, at + 1);
@@ -45,9 +47,8 @@ std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
 
 // Truevision, TGA File Format Specification 2.0: images of types 1 and 9 are indices.
 std::optional<std::string> damage_of_tga(std::string_view bytes) {
-  constexpr std::size_t kTypeAt = 2;
+  constexpr std::size_t kTypeAt = 2, kDepthAt = 16;
   if (bytes.size() < kFormatBytes) return "is truncated";
-  constexpr std::size_t kDepthAt = 16;
   const bool grey = bytes[kTypeAt] == 3 || bytes[kTypeAt] == 11;
   if (bytes[kTypeAt] == 1 || bytes[kTypeAt] == 9) return "has a palette";
   if (!grey && byte_at(bytes, kDepthAt) < 15) return fmt::format("has colours of {} bits", byte_at(bytes, kDepthAt));
@@ -61,14 +62,12 @@ struct Signature {
 
 constexpr Signature kSignatures[] = {
     {"openexr", "\x76\x2f\x31\x01"},
-    {"png", "\x89PNG\r\n\x1a\n"},
     {"jpeg", "\xff\xd8\xff"},
     {"tiff", std::string_view("II\x2a\0", 4)},
     {"tiff", std::string_view("MM\0\x2a", 4)},
     {"tiff", std::string_view("II\x2b\0", 4)},  // BigTIFF
     {"tiff", std::string_view("MM\0\x2b", 4)},
     {"hdr", "#?"},
-    {"webp", "WEBP", 8},
     {"heif", "ftypavif", 4},
     {"heif", "ftypavis", 4},
     {"heif", "ftyphe", 4},
@@ -86,6 +85,8 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
 }  // namespace
 
 std::string_view format_of(std::string_view first_bytes, const std::filesystem::path& name) {
+  if (is_png(first_bytes)) return "png";
+  if (is_webp(first_bytes)) return "webp";
   for (const Signature& signature : kSignatures) {
     const bool reaches = first_bytes.size() >= signature.at + signature.bytes.size();
     if (reaches && first_bytes.substr(signature.at).starts_with(signature.bytes)) return signature.format;
@@ -104,7 +105,7 @@ std::optional<std::string> find_damage(std::string_view format, std::string_view
 
 bool tells_damage(std::string_view format, std::string_view message) {
   const auto says = [&](std::string_view words) { return message.find(words) != std::string_view::npos; };
-  return format != "jpeg" || says("Corrupt JPEG data") || says("Premature end");
+  return !message.empty() && (format != "jpeg" || says("Corrupt JPEG data") || says("Premature end"));
 }
 
 bool may_hold(std::uintmax_t file_bytes, std::uintmax_t pixel_bytes) {

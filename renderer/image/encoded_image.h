@@ -23,8 +23,8 @@ std::string_view format_of(std::string_view first_bytes, const std::filesystem::
 // the first ones.
 std::optional<std::string> find_damage(std::string_view format, std::string_view bytes);
 
-// Whether what a reader says of pixels that it has read is that they are not right. Of JPEGs it says much that is
-// harmless.
+// Whether what a reader says of pixels that it has read, if anything, is that they are not right. Of JPEGs it says much
+// that is harmless.
 bool tells_damage(std::string_view format, std::string_view message);
 
 // Whether a file of `file_bytes` may hold so many bytes of pixels. No picture of any use is packed tighter, but for

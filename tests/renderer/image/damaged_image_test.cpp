@@ -146,7 +146,7 @@ TEST(DamagedImage, ATiffWithoutAllOfItsPixelsIsRefused) {
   }
 }
 
-// A directory's entry for that tag with another value, or list of them, in the place of what there is.
+// With other bytes in the place of those.
 std::string replaced(std::string bytes, const std::string& before, const std::string& after) {
   const std::size_t at = bytes.find(before);
   EXPECT_NE(at, std::string::npos);
@@ -163,6 +163,15 @@ TEST(DamagedImage, ATiffOfSamplesThatOpenImageIoGetsWrongIsRefused) {
   EXPECT_NE(error_of([&] { load_image(wide); }).find("samples of 24 bits"), std::string::npos);
   const auto inverted = folder.write("inverted.tif", replaced(whole, photometric + '\2', photometric + '\0'));
   EXPECT_NE(error_of([&] { load_image(inverted); }).find("white as zero"), std::string::npos);
+}
+
+// OpenImageIO would make fractions of 2³² of them.
+TEST(DamagedImage, AnExrWhoseColoursAreWholeNumbersIsRefused) {
+  const test::TemporaryFolder folder;
+  save_image(busy_image(), folder / "float.exr", PixelType::kFloat);
+  const std::string red_float("R\0\2\0\0\0", 6), red_whole("R\0\0\0\0\0", 6);
+  const auto path = folder.write("whole.exr", replaced(read_file(folder / "float.exr"), red_float, red_whole));
+  EXPECT_NE(error_of([&] { load_image(path); }).find("channel R: has whole numbers"), std::string::npos);
 }
 
 TEST(DamagedImage, ATiffWhosePixelsCannotBeUnpackedIsRefused) {
