@@ -9,10 +9,10 @@
 
 namespace chiaro::renderer {
 
-// PNG or WebP.
+// PNG, WebP, AVIF or HEIC.
 bool has_samples(std::string_view encoded);
 
-// As read_png_header and decode_png, read_webp_header and decode_webp.
+// As read_png_header and decode_png, and so on.
 SamplesHeader read_samples_header(std::string_view encoded, const std::string& file);
 std::vector<std::uint8_t> decode_samples(std::string_view encoded, const std::string& file);
 

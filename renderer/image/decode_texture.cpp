@@ -12,7 +12,6 @@
 #include "renderer/image/decode_samples.h"
 #include "renderer/image/encoded_image.h"
 #include "renderer/image/image_file.h"
-#include "renderer/image/memory_file.h"
 #include "renderer/image/read_through_library.h"
 
 namespace chiaro::renderer {
@@ -132,10 +131,6 @@ Texture decode(std::string_view encoded, std::string_view format, const std::str
   if (has_samples(encoded)) return decode_samples_texture(encoded, label);
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;
-  if (format == "heif") {  // read from files only
-    const MemoryFile file(encoded);
-    return decode_by(format, file.path(), config, encoded.size(), label);
-  }
   OIIO::Filesystem::IOMemReader reader(const_cast<char*>(encoded.data()), encoded.size());
   OIIO::Filesystem::IOProxy* proxy = &reader;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);

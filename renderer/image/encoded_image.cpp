@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/file_extension.h"
+#include "renderer/image/decode_heif.h"
 #include "renderer/image/decode_png.h"
 #include "renderer/image/decode_webp.h"
 
@@ -57,29 +58,19 @@ std::optional<std::string> damage_of_tga(std::string_view bytes) {
 
 struct Signature {
   std::string_view format, bytes;
-  std::size_t at = 0;
 };
 
 constexpr Signature kSignatures[] = {
-    {"openexr", "\x76\x2f\x31\x01"},
-    {"jpeg", "\xff\xd8\xff"},
-    {"tiff", std::string_view("II\x2a\0", 4)},
-    {"tiff", std::string_view("MM\0\x2a", 4)},
+    {"openexr", "\x76\x2f\x31\x01"},           {"jpeg", "\xff\xd8\xff"},
+    {"tiff", std::string_view("II\x2a\0", 4)}, {"tiff", std::string_view("MM\0\x2a", 4)},
     {"tiff", std::string_view("II\x2b\0", 4)},  // BigTIFF
-    {"tiff", std::string_view("MM\0\x2b", 4)},
-    {"hdr", "#?"},
-    {"heif", "ftypavif", 4},
-    {"heif", "ftypavis", 4},
-    {"heif", "ftyphe", 4},
-    {"heif", "ftypmif", 4},
-    {"heif", "ftypmiaf", 4},
-    {"heif", "ftypmsf1", 4},
+    {"tiff", std::string_view("MM\0\x2b", 4)}, {"hdr", "#?"},
 };
 
 constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
-    {".exr", "openexr"}, {".png", "png"},   {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},  {".tiff", "tiff"},
-    {".hdr", "hdr"},     {".webp", "webp"}, {".avif", "heif"}, {".heic", "heif"}, {".heif", "heif"}, {".tga", "targa"},
-    {".ppm", "pnm"},     {".pgm", "pnm"},   {".pfm", "pnm"},   {".pnm", "pnm"},   {".pbm", "pnm"},
+    {".exr", "openexr"}, {".png", "png"}, {".jpg", "jpeg"},  {".jpeg", "jpeg"}, {".tif", "tiff"},
+    {".tiff", "tiff"},   {".hdr", "hdr"}, {".webp", "webp"}, {".tga", "targa"}, {".ppm", "pnm"},
+    {".pgm", "pnm"},     {".pfm", "pnm"}, {".pnm", "pnm"},   {".pbm", "pnm"},
 };
 
 }  // namespace
@@ -87,9 +78,9 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
 std::string_view format_of(std::string_view first_bytes, const std::filesystem::path& name) {
   if (is_png(first_bytes)) return "png";
   if (is_webp(first_bytes)) return "webp";
+  if (is_heif(first_bytes)) return "heif";
   for (const Signature& signature : kSignatures) {
-    const bool reaches = first_bytes.size() >= signature.at + signature.bytes.size();
-    if (reaches && first_bytes.substr(signature.at).starts_with(signature.bytes)) return signature.format;
+    if (first_bytes.starts_with(signature.bytes)) return signature.format;
   }
   for (const auto& [extension, format] : kExtensions) {
     if (has_extension(name, {std::string(extension)})) return format;

@@ -75,25 +75,22 @@ std::string first_bytes(const std::filesystem::path& path) {
 
 struct OpenImage {
   std::string_view format;  // OpenImageIO's name of it
-  std::string encoded{};    // all bytes of a PNG or a WebP, which are decoded here
+  std::string encoded{};    // all bytes of a picture whose samples are decoded here
   SamplesHeader header{};
   std::unique_ptr<OIIO::Filesystem::IOProxy> reader{};
-  std::unique_ptr<OIIO::ImageInput> input{};
+  std::unique_ptr<OIIO::ImageInput> input{};  // of others, and for what else is in a PNG or a WebP
+  OIIO::ImageSpec spec{};
   std::optional<RadianceHeader> radiance{};  // of a Radiance picture
   int part = 0;                              // of an OpenEXR file of several
 };
-
-bool has_format(const OIIO::ImageInput& input, const char* format) {
-  return std::strcmp(input.format_name(), format) == 0;
-}
 
 bool has_colors(const OIIO::ImageSpec& spec) {
   return spec.channelindex("R") >= 0 && spec.channelindex("G") >= 0 && spec.channelindex("B") >= 0;
 }
 
 // The first part with colours; where none has, the first: depth may come before them.
-int choose_part(OIIO::ImageInput& input) {
-  if (!has_format(input, "openexr") || has_colors(input.spec())) return 0;
+int choose_part(OIIO::ImageInput& input, std::string_view format) {
+  if (format != "openexr" || has_colors(input.spec())) return 0;
   for (int part = 1; input.seek_subimage(part, 0); ++part) {
     if (has_colors(input.spec())) return part;
   }
@@ -118,6 +115,12 @@ std::unique_ptr<OIIO::ImageInput> open_input(const OpenImage& image, const std::
                "an image"});
 }
 
+// OpenImageIO decodes AVIF and HEIC as it opens them, whatever their size.
+OIIO::ImageSpec spec_of(const SamplesHeader& header) {
+  return {header.width, header.height, header.channels,
+          header.bytes_per_sample == 2 ? OIIO::TypeUInt16 : OIIO::TypeUInt8};
+}
+
 // Some damage is taken for a picture, or for a size to take memory by: it is found before OpenImageIO sees the file.
 OpenImage open(const std::filesystem::path& path) {
   require_file(path, "an image");
@@ -129,24 +132,33 @@ OpenImage open(const std::filesystem::path& path) {
     image.header = read_samples_header(image.encoded, path.string());
     image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
   }
+  if (image.format == "heif") {
+    image.spec = spec_of(image.header);
+    return image;
+  }
   std::optional<std::string> damage = find_damage(image.format, image.format == "jpeg" ? read_file(path) : first);
   if (!damage) damage = find_exr_header_damage(path);
   if (damage) throw Error({path.string(), "", *damage, "a whole image"});
   image.input = open_input(image, path);
-  image.part = choose_part(*image.input);
-  if (has_format(*image.input, "hdr")) image.radiance = read_radiance_header(path);
+  image.part = choose_part(*image.input, image.format);
+  image.spec = image.input->spec();
+  if (image.format == "hdr") image.radiance = read_radiance_header(path);
   return image;
 }
 
 // OpenImageIO makes fractions of the most that there could be of whole numbers, which identify things.
-void check_color_types(const OIIO::ImageInput& input, const std::string& file) {
-  const OIIO::ImageSpec& spec = input.spec();
-  if (!has_format(input, "openexr")) return;
+void check_color_types(const OpenImage& open, const std::string& file) {
+  if (open.format != "openexr") return;
   for (const char* const name : {"R", "G", "B"}) {
-    const int c = spec.channelindex(name);
-    if (c < 0 || spec.channelformat(c).is_floating_point()) continue;
+    const int c = open.spec.channelindex(name);
+    if (c < 0 || open.spec.channelformat(c).is_floating_point()) continue;
     throw Error({file, std::string("channel ") + name, "has whole numbers", "half or full floats"});
   }
+}
+
+void check_curve(const SamplesHeader& header, const std::string& file) {
+  if (header.curve == nullptr) return;
+  throw Error({file, "colours", fmt::format("have the curve \"{}\"", header.curve), "sRGB's"});
 }
 
 void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
@@ -160,16 +172,16 @@ void check_size(const OIIO::ImageSpec& spec, const std::string& file) {
 }
 
 // OpenEXR alone has a data window within a display window. What other formats have is where a page or a layer lay.
-OIIO::ImageSpec picture_spec(const OIIO::ImageInput& input) {
-  OIIO::ImageSpec spec = input.spec();
-  if (has_format(input, "openexr")) return spec;
+OIIO::ImageSpec picture_spec(const OpenImage& open) {
+  OIIO::ImageSpec spec = open.spec;
+  if (open.format == "openexr") return spec;
   spec.x = spec.y = spec.full_x = spec.full_y = 0;
   spec.full_width = spec.width, spec.full_height = spec.height;
   return spec;
 }
 
-int orientation_of(const OIIO::ImageInput& input) {
-  return has_format(input, "openexr") ? 1 : input.spec().get_int_attribute("Orientation", 1);
+int orientation_of(const OpenImage& open) {
+  return open.format == "openexr" ? 1 : open.spec.get_int_attribute("Orientation", 1);
 }
 
 // The part of the picture that there are pixels of, as OpenEXR's data window within its display window.
@@ -202,23 +214,23 @@ void require_same_shape(const OpenImage& open, const OIIO::ImageSpec& spec, cons
 
 // OpenImageIO does not say of all formats whose colours never are multiplied that they are not.
 bool has_associated_alpha(const OIIO::ImageSpec& spec, std::string_view format) {
-  if (spec.alpha_channel < 0 || format == "png" || format == "webp") return false;
+  if (spec.alpha_channel < 0 || format == "png" || format == "webp" || format == "heif") return false;
   return format == "openexr" || spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
 ImageFile header_of(const OpenImage& open, const std::filesystem::path& path) {
-  const OIIO::ImageInput& input = *open.input;
-  const OIIO::ImageSpec spec = picture_spec(input);
+  const OIIO::ImageSpec spec = picture_spec(open);
   check_size(spec, path.string());
   check_window(spec, path.string());
-  check_color_types(input, path.string());
+  check_color_types(open, path.string());
+  check_curve(open.header, path.string());
   require_same_shape(open, spec, path.string());
   ImageFile file;
   file.image = Image{spec.full_width, spec.full_height, spec.channelnames, {}};
   file.part = is_cropped(spec);
-  if (is_turned(orientation_of(input))) std::swap(file.image.width, file.image.height);
-  const bool exr = has_format(input, "openexr");
-  file.associated_alpha = has_associated_alpha(spec, input.format_name());
+  if (is_turned(orientation_of(open))) std::swap(file.image.width, file.image.height);
+  const bool exr = open.format == "openexr";
+  file.associated_alpha = has_associated_alpha(spec, open.format);
   file.whole_numbers = !spec.format.is_floating_point();
   file.srgb_curve =
       file.whole_numbers && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
@@ -304,14 +316,14 @@ void divide_by(Vec3f multiplied, Image& image) {
 ImageFile read_image(const std::filesystem::path& path) {
   OpenImage opened = open(path);
   ImageFile file = header_of(opened, path);
-  if (!may_hold(std::filesystem::file_size(path), opened.input->spec().image_bytes(true))) {
+  if (!may_hold(std::filesystem::file_size(path), opened.spec.image_bytes(true))) {
     throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
   }
-  const OIIO::ImageSpec spec = picture_spec(*opened.input);
+  const OIIO::ImageSpec spec = picture_spec(opened);
   Image image = make_image(spec.width, spec.height, std::move(file.image.channel_names));
   read_pixels(opened, path.string(), image);
   if (opened.radiance) divide_by(opened.radiance->multiplied, image);
-  file.image = upright(file.part ? in_window(image, spec) : std::move(image), orientation_of(*opened.input));
+  file.image = upright(file.part ? in_window(image, spec) : std::move(image), orientation_of(opened));
   return file;
 }
 

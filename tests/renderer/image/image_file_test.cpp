@@ -10,6 +10,7 @@
 #include "renderer/core/atomic_file.h"
 #include "tests/renderer/io/gltf_builder.h"
 #include "tests/support/associated_tiff.h"
+#include "tests/support/from_base64.h"
 #include "tests/support/test_names.h"
 
 namespace chiaro::renderer::tests {
@@ -23,6 +24,7 @@ using renderer::load_image;
 using renderer::make_image;
 using renderer::PixelType;
 using renderer::save_image;
+using test::from_base64;
 
 Image layered_image() {
   Image image = make_image(7, 5, {"R", "G", "B", "A", "albedo.R", "light.key lamp.B", "depth", "visibility"});
@@ -251,33 +253,6 @@ TEST(DecodeTexture, DamageIsToldWithTheLabel) {
   EXPECT_NE(error_of([&] { renderer::decode_texture(flipped, "t"); }).find("corrupt"), std::string::npos);
 }
 
-// 8 x 16 texels, the upper half red, the lower half black; base64, as nothing here writes AVIF.
-constexpr std::string_view kAvif =
-    "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAASttZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAA"
-    "AA5waXRtAAAAAAABAAAANGlsb2MAAAAAREAAAgABAAAAAAFPAAEAAAAAAAAAJAACAAAAAAFzAAEAAAAAAAABFAAAADhpaW5mAAAA"
-    "AAACAAAAFWluZmUCAAAAAAEAAGF2MDEAAAAAFWluZmUCAAABAAIAAEV4aWYAAAAAamlwcnAAAABLaXBjbwAAABNjb2xybmNseAAC"
-    "AAIABoAAAAAMYXYxQ4EADAAAAAAUaXNwZQAAAAAAAAAIAAAAEAAAABBwaXhpAAAAAAMICAgAAAAXaXBtYQAAAAAAAAABAAEEgYID"
-    "hAAAABppcmVmAAAAAAAAAA5jZHNjAAIAAQABAAABQG1kYXQSAAoIGAj/sECAgaEyFhgACiiihQBIYtJLSwsgk2IZXynLcjQAAAEM"
-    "RXhpZgAATU0qAAAAALZvaWlvdG9vbCAtLWNyZWF0ZSA4eDE2IDMgLS1maWxsOmNvbG9yPTEsMCwwIDh4OCAtZCB1aW50OCAtbyAv"
-    "dG1wL2dlb190LmF2aWYAT3BlbkltYWdlSU8gMi40LjcuMSA6IG9paW90b29sIC0tY3JlYXRlIDh4MTYgMyAtLWZpbGw6Y29sb3I9"
-    "MSwwLDAgOHg4IC1kIHVpbnQ4IC1vIC90bXAvZ2VvX3QuYXZpZgAAAgExAAIAAABiAAAAVIdpAAQAAAABAAAA1AAAAAAABJAAAAcA"
-    "AAAEMDIzMJEBAAcAAAAEAQIDAJITAAIAAABMAAAACKAAAAcAAAAEMDEwMAAAAAA=";
-
-std::string from_base64(std::string_view text) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text.substr(0, text.find('='))) {
-    bits = bits << 6 | std::uint32_t(kDigits.find(c));
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes += char(bits >> count & 0xFF);
-  }
-  return bytes;
-}
-
 // 4 x 2 texels: 200, 100, 50 at alpha 128 above, 10, 20, 30 at alpha 0 below; base64, as OpenImageIO's writer
 // multiplies by alpha.
 constexpr std::string_view kWebp = "UklGRiIAAABXRUJQVlA4TBYAAAAvA0AAEA9wCqgr+J7CYwCDFvMQ0f8I";
@@ -307,20 +282,6 @@ TEST(DecodeTexture, WebpThatContradictsItselfIsRefused) {
                             "AAAAAlqAJ0twD9AP4BSgPwArv/cAARgdy0QAD+//4ih//pXw///zw3VJvn76J8mBR12q//l8qFvYZPn7uTSHxEpq//"
                             "RtAA"));
   EXPECT_NE(error_of([&] { load_image(path); }).find("contradicts itself"), std::string::npos);
-}
-
-TEST(DecodeTexture, AvifIsReadFromMemoryAndTruncatedOnesAreRefused) {
-  const std::string whole = from_base64(kAvif);
-  const renderer::Texture texture = renderer::decode_texture(whole, "t");
-  ASSERT_EQ(texture.width, 8);
-  ASSERT_EQ(texture.height, 16);
-  EXPECT_GT(texture.rgba[0], 200);
-  EXPECT_LT(texture.rgba[4 * 8 * 15], 50);
-  EXPECT_EQ(texture.rgba[3], 255);
-  for (std::size_t size = 0; size < whole.size(); size += 7) {
-    const std::string message = error_of([&] { renderer::decode_texture(whole.substr(0, size), "images[7]"); });
-    EXPECT_EQ(message.rfind("images[7]", 0), 0U) << size << " of " << whole.size() << ": " << message;
-  }
 }
 
 TEST(ImageFile, SaysWhetherColoursAreMultipliedByAlpha) {
