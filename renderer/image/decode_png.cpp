@@ -5,7 +5,10 @@
 #include <csetjmp>
 #include <cstring>
 #include <new>
+#include <span>
+#include <utility>
 
+#include <fmt/format.h>
 #include <png.h>
 
 #include "renderer/core/error.h"
@@ -18,7 +21,7 @@ constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 // What libpng's callbacks reach. They leave by longjmp(), which passes over nothing that has a destructor.
 struct Reading {
   std::string_view left;
-  bool truncated = false;
+  bool truncated = false, palette = false;
   char problem[128] = "";
   std::vector<png_bytep> rows{};
   png_structp png = nullptr;
@@ -43,11 +46,13 @@ void read_bytes(png_structp png, png_bytep to, png_size_t count) {
   reading.left.remove_prefix(count);
 }
 
-// Samples become whole bytes, and what is transparent is in a channel.
+// Samples become whole bytes, and what is transparent is in a channel. Palettes are looked up here: libpng takes
+// indices beyond them for black.
 void read_header(Reading& reading) {
   png_set_crc_action(reading.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_read_info(reading.png, reading.info);
-  png_set_expand(reading.png);
+  reading.palette = png_get_color_type(reading.png, reading.info) == PNG_COLOR_TYPE_PALETTE;
+  reading.palette ? png_set_packing(reading.png) : png_set_expand(reading.png);
   if constexpr (std::endian::native == std::endian::little) png_set_swap(reading.png);
   png_set_interlace_handling(reading.png);
   png_read_update_info(reading.png, reading.info);
@@ -82,21 +87,49 @@ class PngReader {
 
   SamplesHeader header() {
     run(read_header);
-    return {int(png_get_image_width(reading_.png, reading_.info)),
-            int(png_get_image_height(reading_.png, reading_.info)), png_get_channels(reading_.png, reading_.info),
+    const int width = int(png_get_image_width(reading_.png, reading_.info));
+    const int height = int(png_get_image_height(reading_.png, reading_.info));
+    if (reading_.palette) return {width, height, palette().second.empty() ? 3 : 4, 1};
+    return {width, height, png_get_channels(reading_.png, reading_.info),
             png_get_bit_depth(reading_.png, reading_.info) / 8};
   }
 
   // After the header.
   std::vector<std::uint8_t> samples(const SamplesHeader& header) {
-    std::vector<std::uint8_t> samples(header.bytes());
+    std::vector<std::uint8_t> samples(header.bytes() / (reading_.palette ? header.channels : 1));
     const std::size_t row = samples.size() / std::size_t(header.height);
     for (int y = 0; y < header.height; ++y) reading_.rows.push_back(&samples[std::size_t(y) * row]);
     run(read_rows);
-    return samples;
+    return reading_.palette ? looked_up(samples, header) : samples;
   }
 
  private:
+  // Colours, and how opaque the first of them are.
+  std::pair<std::span<const png_color>, std::span<const png_byte>> palette() {
+    png_colorp colors = nullptr;
+    png_bytep opacities = nullptr;
+    int color_count = 0, opacity_count = 0;
+    png_get_PLTE(reading_.png, reading_.info, &colors, &color_count);
+    png_get_tRNS(reading_.png, reading_.info, &opacities, &opacity_count, nullptr);
+    return {{colors, std::size_t(color_count)}, {opacities, std::size_t(opacity_count)}};
+  }
+
+  std::vector<std::uint8_t> looked_up(const std::vector<std::uint8_t>& indices, const SamplesHeader& header) {
+    const auto [colors, opacities] = palette();
+    std::vector<std::uint8_t> samples;
+    samples.reserve(header.bytes());
+    for (const std::uint8_t index : indices) {
+      if (index >= colors.size()) {
+        throw Error(
+            {file_, "", fmt::format("is corrupt: colour {} of a palette of {}", index, colors.size()), "a whole PNG"});
+      }
+      const png_color& color = colors[index];
+      samples.insert(samples.end(), {color.red, color.green, color.blue});
+      if (header.channels == 4) samples.push_back(index < opacities.size() ? opacities[index] : 255);
+    }
+    return samples;
+  }
+
   void run(void (*read)(Reading&)) {
     if (succeeds(read, reading_)) return;
     const std::string problem = reading_.problem;

@@ -250,20 +250,38 @@ void decode_pixels(const OpenImage& open, const std::string& file, Image& image)
                       image.pixels.data(), OIIO::TypeFloat, OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride);
 }
 
-// What OpenImageIO 2.4 does not get right: pixels of other sizes and inverted ones are wrong, tiles of four inks
-// overrun their memory.
+// TIFF 6.0, tag PhotometricInterpretation.
+enum TiffColors { kWhiteIsZero = 0, kBlackIsZero = 1, kRgb = 2, kPalette = 3, kSeparated = 5 };
+
+// OpenImageIO has libtiff make 8 bits of red, green and blue of other colours and of some JPEGs, which it does whatever
+// is missing or damaged.
+void require_told_damage(const OIIO::ImageSpec& spec, TiffColors colors, const std::string& file) {
+  if (OIIO::Strutil::ends_with(spec.get_string_attribute("compression"), "jpeg")) {
+    throw Error({file, "pixels", "are JPEGs", "another compression of a TIFF, or a JPEG file"});
+  }
+  if (colors > kPalette && colors != kSeparated) {
+    const std::string name = spec.get_string_attribute("tiff:ColorSpace", "other colours");
+    throw Error({file, "pixels", fmt::format("are {}", name), "red, green and blue"});
+  }
+}
+
+// What OpenImageIO 2.4 does not get right: pixels of other sizes, palettes with more channels and inverted ones are
+// wrong, tiles of four inks overrun their memory.
 void require_readable_tiff(const OIIO::ImageSpec& spec, const std::string& file) {
-  constexpr int kWhiteIsZero = 0;
+  const auto colors = TiffColors(spec.get_int_attribute("tiff:PhotometricInterpretation", kRgb));
+  require_told_damage(spec, colors, file);
+  if (colors == kPalette && spec.alpha_channel >= 0) {
+    throw Error({file, "pixels", "have a palette and alpha", "red, green, blue and alpha"});
+  }
   const int bits = spec.get_int_attribute("oiio:BitsPerSample", int(8 * spec.format.size()));
   const bool tiles = spec.tile_width > 0;
   if (bits > 16 && bits != 32 && (bits != 64 || tiles)) {
     throw Error({file, "pixels", fmt::format("have samples of {} bits", bits), "up to 16 bits or 32"});
   }
-  const bool inverted = spec.get_int_attribute("tiff:PhotometricInterpretation", -1) == kWhiteIsZero;
-  if (inverted && (bits > 8 || spec.nchannels > 1)) {
+  if (colors == kWhiteIsZero && (bits > 8 || spec.nchannels > 1)) {
     throw Error({file, "pixels", "have white as zero", "black as zero, but for 8 bits of grey"});
   }
-  if (tiles && spec.get_string_attribute("tiff:ColorSpace") == "CMYK") {
+  if (tiles && colors == kSeparated) {
     throw Error({file, "pixels", "are tiles of four inks", "red, green and blue"});
   }
 }

@@ -163,6 +163,21 @@ TEST(DamagedImage, ATiffOfSamplesThatOpenImageIoGetsWrongIsRefused) {
   EXPECT_NE(error_of([&] { load_image(wide); }).find("samples of 24 bits"), std::string::npos);
   const auto inverted = folder.write("inverted.tif", replaced(whole, photometric + '\2', photometric + '\0'));
   EXPECT_NE(error_of([&] { load_image(inverted); }).find("white as zero"), std::string::npos);
+  const auto inks = folder.write("inks.tif", replaced(TiffBytes::of_tiles(16), photometric + '\2', photometric + '\5'));
+  EXPECT_NE(error_of([&] { load_image(inks); }).find("tiles of four inks"), std::string::npos);
+}
+
+// libtiff makes something of them whatever is missing.
+TEST(DamagedImage, ATiffWhoseDamageWouldNotBeToldIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::string photometric("\x06\1\4\0\1\0\0\0", 8), compression("\x03\1\4\0\1\0\0\0", 8);
+  const std::string whole = TiffBytes::of_strips(8);
+  for (const auto& [code, name] : {std::pair('\6', "YCbCr"), {'\x08', "LAB"}}) {
+    const auto path = folder.write("other.tif", replaced(whole, photometric + '\2', photometric + code));
+    EXPECT_NE(error_of([&] { load_image(path); }).find(name), std::string::npos) << error_of([&] { load_image(path); });
+  }
+  const auto jpeg = folder.write("jpeg.tif", replaced(whole, compression + '\1', compression + '\7'));
+  EXPECT_NE(error_of([&] { load_image(jpeg); }).find("JPEG"), std::string::npos) << error_of([&] { load_image(jpeg); });
 }
 
 // OpenImageIO would make fractions of 2³² of them.

@@ -81,6 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"two_headers", png(kHeader + kHeader + kPixels), "is corrupt: IHDR: out of place"},
         Fault{"no_pixels", png(kHeader), "is corrupt: IEND: out of place"},
         Fault{"no_palette", png(header(2, 2, 8, 3) + kPixels), "is corrupt: IDAT: Missing PLTE before IDAT"},
+        Fault{"beyond_palette", png(header(2, 1, 2, 3) + chunk("PLTE", "abc012xyz") + pixels(std::string("\0\xc0", 2))),
+              "is corrupt: colour 3 of a palette of 3"},
         Fault{"unknown_chunk", png(kHeader + chunk("ABCD", "") + kPixels),
               "is corrupt: ABCD: unhandled critical chunk"},
         Fault{"no_end", kSignature + kHeader + kPixels, "is truncated"}),
