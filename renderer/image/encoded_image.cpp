@@ -1,6 +1,10 @@
 #include "renderer/image/encoded_image.h"
 
+#include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <locale>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +18,13 @@ namespace chiaro::renderer {
 namespace {
 
 std::uint32_t byte_at(std::string_view bytes, std::size_t at) { return static_cast<unsigned char>(bytes[at]); }
+
+std::optional<double> number_of(std::string_view word) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return number;
+}
 
 // Past the entropy-coded data of a scan: where the next marker begins that is not a restart.
 std::size_t end_of_scan(std::string_view bytes, std::size_t at) {
@@ -48,12 +59,47 @@ std::optional<std::string> damage_of_jpeg(std::string_view bytes) {
 
 // Truevision, TGA File Format Specification 2.0: images of types 1 and 9 are indices.
 std::optional<std::string> damage_of_tga(std::string_view bytes) {
-  constexpr std::size_t kTypeAt = 2, kDepthAt = 16;
-  if (bytes.size() < kFormatBytes) return "is truncated";
+  constexpr std::size_t kTypeAt = 2, kDepthAt = 16, kDescriptorAt = 17;
+  if (bytes.size() <= kDescriptorAt) return "is truncated";
   const bool grey = bytes[kTypeAt] == 3 || bytes[kTypeAt] == 11;
   if (bytes[kTypeAt] == 1 || bytes[kTypeAt] == 9) return "has a palette";
   if (!grey && byte_at(bytes, kDepthAt) < 15) return fmt::format("has colours of {} bits", byte_at(bytes, kDepthAt));
+  if (byte_at(bytes, kDescriptorAt) >> 6 != 0) return "has interleaved lines";
   return std::nullopt;
+}
+
+// The words of a PNM's header: its kind, width, height and, but for bits, the largest sample.
+std::vector<std::string> pnm_words(std::string_view bytes) {
+  std::vector<std::string> words;
+  std::istringstream text{std::string(bytes)};
+  text.imbue(std::locale::classic());
+  for (std::string word; words.size() < 4 && text >> word;) {
+    if (word.starts_with('#')) {
+      std::getline(text, word);
+    } else {
+      words.push_back(word);
+    }
+  }
+  return words;
+}
+
+// Poskanzer's formats as netpbm documents them, and PFM. OpenImageIO computes with samples of up to 32767 or all 16
+// bits.
+std::optional<std::string> damage_of_pnm(std::string_view bytes) {
+  const std::vector<std::string> words = pnm_words(bytes);
+  if (words.empty()) return "is truncated";
+  const std::string& kind = words.front();
+  if (kind == "P4") return std::nullopt;
+  if (kind != "P5" && kind != "P6" && kind != "PF" && kind != "Pf") return "is not a picture of bytes (P4, P5, P6, PF)";
+  if (words.size() < 4) return "is truncated";
+  const std::string problem = fmt::format("has samples of up to {}", words[3].substr(0, 20));
+  if (kind == "PF" || kind == "Pf") {
+    const std::optional<double> scale = number_of(words[3]);
+    return scale && std::isnormal(float(*scale)) ? std::nullopt : std::optional(problem);
+  }
+  const std::optional<double> most = number_of(words[3]);
+  const bool read = most && ((*most >= 1 && *most <= 32767) || *most == 65535) && *most == std::floor(*most);
+  return read ? std::nullopt : std::optional(problem);
 }
 
 struct Signature {
@@ -91,6 +137,7 @@ std::string_view format_of(std::string_view first_bytes, const std::filesystem::
 std::optional<std::string> find_damage(std::string_view format, std::string_view bytes) {
   if (format == "jpeg") return damage_of_jpeg(bytes);
   if (format == "targa") return damage_of_tga(bytes);
+  if (format == "pnm") return damage_of_pnm(bytes);
   return std::nullopt;
 }
 

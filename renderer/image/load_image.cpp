@@ -137,7 +137,7 @@ OpenImage open(const std::filesystem::path& path) {
     return image;
   }
   std::optional<std::string> damage = find_damage(image.format, image.format == "jpeg" ? read_file(path) : first);
-  if (!damage) damage = find_exr_header_damage(path);
+  if (image.format == "openexr") damage = find_exr_header_damage(path);
   if (damage) throw Error({path.string(), "", *damage, "a whole image"});
   image.input = open_input(image, path);
   image.part = choose_part(*image.input, image.format);

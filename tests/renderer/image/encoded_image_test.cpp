@@ -28,7 +28,7 @@ TEST(EncodedImage, WhatItIsGoesByItsBytesAndThenByItsName) {
 // OpenImageIO reads what memory has behind the palette, and nothing of colours that have too few bits.
 TEST(EncodedImage, ATgaWithAPaletteOrWithTooFewBitsIsRefused) {
   const auto tga = [](char type, char bits) {
-    return std::string("\0\1", 2) + type + std::string(13, '\0') + bits + '\0';
+    return std::string("\0\0", 2) + type + std::string(13, '\0') + bits + '\0';
   };
   for (const char type : {1, 9}) EXPECT_EQ(find_damage("targa", tga(type, 8)), "has a palette");
   for (const char type : {2, 10}) {
@@ -37,6 +37,20 @@ TEST(EncodedImage, ATgaWithAPaletteOrWithTooFewBitsIsRefused) {
   }
   for (const char type : {3, 11}) EXPECT_FALSE(find_damage("targa", tga(type, 8)));
   EXPECT_EQ(find_damage("targa", tga(2, 24).substr(0, 17)), "is truncated");
+  EXPECT_EQ(find_damage("targa", tga(2, 24).substr(0, 17) + '\x40'), "has interleaved lines");
+}
+
+// OpenImageIO makes white of samples up to 0, and overflows above 32767.
+TEST(EncodedImage, APnmWhoseSamplesAreNotReadRightIsRefused) {
+  for (const char* header : {"P6\n2 2\n255\n", "P5 2 2 65535\n", "P6\n# a comment 0\n2 2\n255\n", "P4\n8 1\n\xff",
+                             "PF\n2 2\n-1.0\n", "Pf\n2 2\n0.5\n"}) {
+    EXPECT_EQ(find_damage("pnm", header), std::nullopt) << header;
+  }
+  for (const char* header :
+       {"", "P6", "P6\n2 2\n", "P6\n2 2\n0\n", "P6\n2 2\n-5\n", "P6\n2 2\n40000\n", "P6\n2 2\n65536\n",
+        "P6\n2 2\n9.5\n", "P3\n2 2\n255\n", "PF\n2 2\n0\n", "PF\n2 2\nnan\n", "PF\n2 2\n1e99\n", "PF\n2 2\nx\n"}) {
+    EXPECT_NE(find_damage("pnm", header), std::nullopt) << header;
+  }
 }
 
 TEST(EncodedImage, WhatReadersSayOfAJpegIsMostlyHarmless) {
