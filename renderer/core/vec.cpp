@@ -27,6 +27,16 @@ Vec3f transform_point(const Mat4f& t, Vec3f p) {
   return p.x * t.column(0) + p.y * t.column(1) + p.z * t.column(2) + t.column(3);
 }
 
+Box3f transform_box(const Mat4f& t, const Box3f& box) {
+  Box3f transformed;
+  for (const float x : {box.min.x, box.max.x}) {
+    for (const float y : {box.min.y, box.max.y}) {
+      for (const float z : {box.min.z, box.max.z}) transformed.extend(transform_point(t, {x, y, z}));
+    }
+  }
+  return transformed;
+}
+
 Vec3f transform_direction(const Mat4f& t, Vec3f d) { return d.x * t.column(0) + d.y * t.column(1) + d.z * t.column(2); }
 
 float determinant3(const Mat4f& a) { return dot(a.column(0), cross(a.column(1), a.column(2))); }

@@ -78,6 +78,7 @@ struct Box3f {
     min = chiaro::renderer::min(min, p);
     max = chiaro::renderer::max(max, p);
   }
+  bool encloses(const Box3f& box) const { return contains(box.min) && contains(box.max); }
   bool contains(Vec3f p) const {
     return p.x >= min.x && p.y >= min.y && p.z >= min.z && p.x <= max.x && p.y <= max.y && p.z <= max.z;
   }
@@ -97,6 +98,8 @@ inline bool is_finite(const Mat4f& a) {
 
 Mat4f operator*(const Mat4f& a, const Mat4f& b);
 Vec3f transform_point(const Mat4f& target_from_source, Vec3f p);
+// Around the box's corners: around what is transformed of it, too, to the last bit, as rounding keeps the order.
+Box3f transform_box(const Mat4f& target_from_source, const Box3f& box);
 Vec3f transform_direction(const Mat4f& target_from_source, Vec3f d);
 // By the inverse transpose of the upper 3 x 3 part; unit length; a singular matrix gives the zero vector.
 Vec3f transform_normal(const Mat4f& target_from_source, Vec3f n);

@@ -204,10 +204,15 @@ std::vector<std::uint32_t> sparse_targets(const GltfDocument& document, const ti
   locate(document, indices, sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), place + ".indices");
   std::vector<std::uint32_t> targets(indices.count);
   copy(indices, nullptr, targets.data());
-  for (const std::uint32_t target : targets) {
-    if (target < accessor.count) continue;
-    fail(document, place + ".indices", fmt::format("{} is out of range", target),
-         fmt::format("less than {}", accessor.count));
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (targets[i] >= accessor.count) {
+      fail(document, place + ".indices", fmt::format("{} is out of range", targets[i]),
+           fmt::format("less than {}", accessor.count));
+    }
+    if (i > 0 && targets[i] <= targets[i - 1]) {
+      fail(document, place + ".indices", fmt::format("{} comes after {}", targets[i], targets[i - 1]),
+           "each larger than the one before");
+    }
   }
   return targets;
 }
@@ -253,6 +258,10 @@ int accessor_components(const GltfDocument& document, int accessor) {
 
 bool accessor_is_float(const GltfDocument& document, int accessor) {
   return document.model->accessors[accessor].componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
+}
+
+bool accessor_is_unsigned(const GltfDocument& document, int accessor) {
+  return is_unsigned(document.model->accessors[accessor].componentType);
 }
 
 std::size_t element_count(const GltfDocument& document, int accessor) { return elements_of(document, accessor).count; }

@@ -17,6 +17,7 @@ std::size_t accessor_count(const GltfDocument& document, int accessor);
 int accessor_components(const GltfDocument& document, int accessor);
 
 bool accessor_is_float(const GltfDocument& document, int accessor);
+bool accessor_is_unsigned(const GltfDocument& document, int accessor);
 
 // Error where it reaches beyond its buffer, or is malformed.
 std::size_t element_count(const GltfDocument& document, int accessor);

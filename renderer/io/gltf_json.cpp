@@ -7,6 +7,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/io/gltf_json_rules.h"
+#include "renderer/io/repeated_keys.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -38,6 +39,7 @@ void check_depth(const std::string& text, const std::string& file) {
 
 json parse(const std::string& text, const std::string& file) {
   check_depth(text, file);
+  refuse_repeated_keys(text, file);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
@@ -202,6 +204,18 @@ void check_version(const json& root, const std::string& file) {
   if (!readable) fail(file, "asset.version", fmt::format("is \"{}\"", version.substr(0, 20)), "2.0");
 }
 
+// What would be left out of nodes that have both.
+void check_transforms(const json& root, const std::string& file) {
+  const json none = json::array();
+  const json& nodes = root.contains("nodes") ? root["nodes"] : none;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (const char* const part : {"translation", "rotation", "scale"}) {
+      if (!nodes[i].contains("matrix") || !nodes[i].contains(part)) continue;
+      fail(file, fmt::format("nodes[{}]", i), fmt::format("has a matrix and a {}", part), "one or the other");
+    }
+  }
+}
+
 std::optional<std::string> string_member(const json& object, const char* key) {
   const auto member = object.find(key);
   return member == object.end() ? std::nullopt : std::optional(member->get<std::string>());
@@ -299,6 +313,7 @@ GltfJson check_gltf_json(const std::string& text, const std::filesystem::path& p
   if (!root.is_object()) fail(file, "JSON", "is not an object", "a glTF 2.0 scene");
   for (const JsonRule& rule : gltf_json_rules()) RuleCheck(root, rule, file).run();
   check_version(root, file);
+  check_transforms(root, file);
   GltfJson result;
   result.animations = take_animations(root, file);
   result.skins = take_skins(root);

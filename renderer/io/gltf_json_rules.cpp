@@ -21,6 +21,9 @@ constexpr JsonRule numbers(std::string_view path, int size, double low = -kLarge
   return {path, kNumbers, kOptional, {}, size, low, high};
 }
 // An int of tinygltf.
+constexpr JsonRule small_count(std::string_view path, bool required = false) {
+  return {path, kCount, required, {}, 0, 0, 2147483647};
+}
 constexpr JsonRule uv_set(std::string_view path) { return {path, kCount, kOptional, {}, 0, 0, 1e9}; }
 constexpr std::string_view kVariantArray = "extensions.KHR_materials_variants.variants";
 constexpr std::string_view kLightArray = "extensions.KHR_lights_punctual.lights";
@@ -62,19 +65,19 @@ constexpr JsonRule kRules[] = {
     {"accessors.[]", kObject},
     index("accessors.[].bufferView", "bufferViews"),
     {"accessors.[].byteOffset", kCount},
-    {"accessors.[].componentType", kCount, kRequired},
+    small_count("accessors.[].componentType", kRequired),
     {"accessors.[].count", kCount, kRequired},
     {"accessors.[].type", kString, kRequired},
     {"accessors.[].normalized", kBoolean},
     {"accessors.[].sparse", kObject},
-    {"accessors.[].sparse.count", kCount, kRequired},
+    small_count("accessors.[].sparse.count", kRequired),
     {"accessors.[].sparse.indices", kObject, kRequired},
     index("accessors.[].sparse.indices.bufferView", "bufferViews", kRequired),
-    {"accessors.[].sparse.indices.byteOffset", kCount},
-    {"accessors.[].sparse.indices.componentType", kCount, kRequired},
+    small_count("accessors.[].sparse.indices.byteOffset"),
+    small_count("accessors.[].sparse.indices.componentType", kRequired),
     {"accessors.[].sparse.values", kObject, kRequired},
     index("accessors.[].sparse.values.bufferView", "bufferViews", kRequired),
-    {"accessors.[].sparse.values.byteOffset", kCount},
+    small_count("accessors.[].sparse.values.byteOffset"),
 
     {"meshes", kArray},
     {"meshes.[]", kObject},
@@ -111,10 +114,10 @@ constexpr JsonRule kRules[] = {
     index("images.[].bufferView", "bufferViews"),
     {"samplers", kArray},
     {"samplers.[]", kObject},
-    {"samplers.[].magFilter", kCount},
-    {"samplers.[].minFilter", kCount},
-    {"samplers.[].wrapS", kCount},
-    {"samplers.[].wrapT", kCount},
+    small_count("samplers.[].magFilter"),
+    small_count("samplers.[].minFilter"),
+    small_count("samplers.[].wrapS"),
+    small_count("samplers.[].wrapT"),
     {"textures", kArray},
     {"textures.[]", kObject},
     index("textures.[].source", "images"),
@@ -294,7 +297,7 @@ constexpr JsonRule kRules[] = {
     {"animations.[].samplers.[].interpolation", kString},
     {"animations.[].channels", kArray, kRequired},
     {"animations.[].channels.[]", kObject},
-    {"animations.[].channels.[].sampler", kCount, kRequired, {}, 0, 0, 2147483647},
+    small_count("animations.[].channels.[].sampler", kRequired),
     {"animations.[].channels.[].target", kObject, kRequired},
     index("animations.[].channels.[].target.node", "nodes"),
     {"animations.[].channels.[].target.path", kString, kRequired},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
+#include <tiny_gltf.h>
 
 #include "renderer/core/control.h"
 
@@ -73,10 +74,23 @@ void apply_filter(const GltfMeshoptView& source, std::string& bytes) {
   if (source.filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), source.count, source.byte_stride);
 }
 
+// Accessors go by the view itself.
+void check_view(const GltfDocument& document, int view, const GltfMeshoptView& source) {
+  const tinygltf::BufferView& plain = document.model->bufferViews[std::size_t(view)];
+  const auto check = [&](const char* name, std::size_t value, std::size_t expected) {
+    if (value == expected) return;
+    fail(document, fmt::format("bufferViews[{}].{}", view, name), fmt::format("is {}", value),
+         fmt::format("{}, as EXT_meshopt_compression has it", expected));
+  };
+  if (plain.byteStride != 0) check("byteStride", plain.byteStride, source.byte_stride);
+  check("byteLength", plain.byteLength, source.count * source.byte_stride);
+}
+
 std::string decode_view(const GltfDocument& document, int view, const GltfMeshoptView& source) {
   const std::string_view compressed = compressed_bytes(document, view, source);
   std::string bytes(checked_size(document, view, source), '\0');
   if (!decode(source, compressed, bytes)) fail(document, place_of(view), "is damaged", "meshoptimizer's format");
+  check_view(document, view, source);
   apply_filter(source, bytes);
   return bytes;
 }

@@ -60,7 +60,11 @@ void add_target(const TargetContext& context, Mesh& mesh) {
 void add_morph_targets(const GltfDocument& document, const GltfPrimitiveRef& ref, const std::vector<float>& weights,
                        Mesh& mesh) {
   const auto& targets = document.model->meshes[std::size_t(ref.mesh)].primitives[std::size_t(ref.primitive)].targets;
-  for (std::size_t t = 0; t < std::min(weights.size(), targets.size()); ++t) {
+  if (!weights.empty() && weights.size() != targets.size()) {
+    fail(document, place_of(ref), fmt::format("has {} morph targets", targets.size()),
+         fmt::format("{}, as there are weights", weights.size()));
+  }
+  for (std::size_t t = 0; t < weights.size(); ++t) {
     if (weights[t] == 0) continue;
     add_target({document, targets[t], fmt::format("{}.targets[{}]", place_of(ref), t), weights[t]}, mesh);
   }

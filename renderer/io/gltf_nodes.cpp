@@ -31,9 +31,9 @@ std::vector<int> parents_of(const GltfDocument& document) {
   return parents;
 }
 
+// Not finite where it has no direction.
 Vec4f unit_quaternion(const std::vector<double>& q) {
   const double l = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(l > 0) || !std::isfinite(l)) return {0, 0, 0, 1};
   return {float(q[0] / l), float(q[1] / l), float(q[2] / l), float(q[3] / l)};
 }
 
@@ -41,17 +41,12 @@ Vec3f vec3_or(const std::vector<double>& values, Vec3f otherwise) {
   return values.empty() ? otherwise : Vec3f{float(values[0]), float(values[1]), float(values[2])};
 }
 
-// Transposed ones have their translation there.
-void check_matrix(const GltfDocument& document, std::size_t node) {
-  constexpr double kTolerance = 1e-5;
-  const std::vector<double>& matrix = document.model->nodes[node].matrix;
-  for (std::size_t column = 0; column < matrix.size() / 4; ++column) {
-    const double expected = column == 3 ? 1 : 0;
-    if (std::abs(matrix[4 * column + 3] - expected) <= kTolerance) continue;
-    fail(document, node_place(node) + ".matrix",
-         fmt::format("element {} is {:.6g}", 4 * column + 3, matrix[4 * column + 3]),
-         "0, 0, 0 and 1 as elements 3, 7, 11 and 15: columns, one after the other");
-  }
+void check_transform(const GltfDocument& document, std::size_t index) {
+  const tinygltf::Node& node = document.model->nodes[index];
+  const std::string place = node_place(index);
+  if (!node.matrix.empty()) check_affine(document, node.matrix, place + ".matrix");
+  if (node.rotation.empty() || std::isfinite(unit_quaternion(node.rotation).w)) return;
+  fail(document, place + ".rotation", "is of no direction", "a unit quaternion");
 }
 
 Mat4f local_transform(const tinygltf::Node& node) {
@@ -126,6 +121,15 @@ std::vector<double> instance_values(const std::vector<float>& values, std::size_
 
 std::string place_of(const PlacedNode& node) { return node_place(std::size_t(node.node)); }
 
+void check_affine(const GltfDocument& document, const std::vector<double>& matrix, const std::string& place) {
+  constexpr double kTolerance = 1e-5;
+  for (std::size_t i = 3; i < 16; i += 4) {
+    if (std::abs(matrix[i] - (i == 15 ? 1 : 0)) <= kTolerance) continue;
+    fail(document, place, fmt::format("element {} is {:.6g}", i, matrix[i]),
+         "0, 0, 0 and 1 as elements 3, 7, 11 and 15: columns, one after the other");
+  }
+}
+
 void check_in_world(const GltfDocument& document, const PlacedNode& node, Vec3f point, const char* what) {
   if (in_world(point)) return;
   fail(document, place_of(node), fmt::format("puts {} at {:g}, {:g}, {:g}", what, point.x, point.y, point.z),
@@ -147,7 +151,7 @@ std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose
     const int i = waiting.back();
     waiting.pop_back();
     const NodePose* posed = find_pose(pose, i);
-    check_matrix(document, i);
+    check_transform(document, std::size_t(i));
     const Mat4f local = posed == nullptr ? local_transform(nodes[i]) : posed_transform(nodes[i], *posed);
     world[i] = parents[i] == kNoParent ? local : world[parents[i]] * local;
     if (!is_finite(world[i])) fail(document, node_place(i), "its transform is not finite", "finite numbers");

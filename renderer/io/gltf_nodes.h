@@ -20,7 +20,7 @@ struct PlacedNode {
 };
 
 // World transforms of all nodes of the file in a pose, whatever scene they are in. Error for cycles, nodes with two
-// parents, and transforms that are not finite.
+// parents, and for transforms that are not finite, of a projection or of no direction.
 std::vector<Mat4f> world_from_nodes(const GltfDocument& document, const GltfPose& pose = {});
 
 // The visible nodes of the scene that is shown, or of a file without scenes, parents before children.
@@ -29,6 +29,10 @@ std::vector<PlacedNode> place_nodes(const GltfDocument& document, const GltfPose
 
 // "nodes[3]"
 std::string place_of(const PlacedNode& node);
+
+// Error, naming the place, where the fourth row of a matrix, which comes column after column, is that of a projection:
+// transposed ones have their translation there.
+void check_affine(const GltfDocument& document, const std::vector<double>& matrix, const std::string& place);
 
 // Error, naming the node, for a point of it that is beyond the world's limits. `what`: "a vertex", "a light", …
 void check_in_world(const GltfDocument& document, const PlacedNode& node, Vec3f point, const char* what);

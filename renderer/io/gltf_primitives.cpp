@@ -18,6 +18,18 @@ std::string attribute_place(const GltfPrimitiveRef& ref, const std::string& name
   return fmt::format("{}.attributes.{}", place_of(ref), name);
 }
 
+// What whole numbers stand for of these is a part of the largest; joints are what they are.
+void check_type(const GltfDocument& document, int accessor, const std::string& name, const std::string& place) {
+  const bool joints = name.starts_with("JOINTS_"), normalized = document.model->accessors[accessor].normalized;
+  const auto begins = [&](const char* attribute) { return name.starts_with(attribute); };
+  if (joints && (normalized || !accessor_is_unsigned(document, accessor))) {
+    fail(document, place, "has no whole numbers as they are", "unsigned bytes or shorts, not normalized");
+  }
+  if (!begins("NORMAL") && !begins("TANGENT") && !begins("COLOR_") && !begins("WEIGHTS_")) return;
+  if (accessor_is_float(document, accessor) || normalized) return;
+  fail(document, place, "has whole numbers that are not normalized", "floats or normalized ones");
+}
+
 // The accessor of an attribute that has one element per vertex, or -1.
 int checked_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref, const std::string& name) {
   const int accessor = find_attribute(document, ref, name);
@@ -27,6 +39,7 @@ int checked_attribute(const GltfDocument& document, const GltfPrimitiveRef& ref,
     fail(document, attribute_place(ref, name), fmt::format("has {} elements", count),
          fmt::format("{}, as POSITION", expected));
   }
+  check_type(document, accessor, name, attribute_place(ref, name));
   return accessor;
 }
 
@@ -118,10 +131,6 @@ std::vector<float> read_scalar_attribute(const GltfDocument& document, const Glt
 
 std::vector<Vec4f> read_colors(const GltfDocument& document, const GltfPrimitiveRef& ref) {
   const int accessor = checked_attribute(document, ref, "COLOR_0");
-  if (accessor >= 0 && !accessor_is_float(document, accessor) && !document.model->accessors[accessor].normalized) {
-    fail(document, attribute_place(ref, "COLOR_0"), "has whole numbers that are not normalized",
-         "floats or normalized ones");
-  }
   if (accessor < 0 || accessor_components(document, accessor) == 4) {
     return read_vec4_attribute(document, ref, "COLOR_0");
   }
@@ -134,6 +143,13 @@ std::optional<std::vector<Triangle>> read_triangles(const GltfDocument& document
   const int mode = primitive_of(document, ref).mode;
   if (mode < TINYGLTF_MODE_TRIANGLES) return std::nullopt;
   return triangles_of(corners(document, ref), mode);
+}
+
+std::size_t spare_corners(const GltfDocument& document, const GltfPrimitiveRef& ref) {
+  const int mode = primitive_of(document, ref).mode, accessor = find_attribute(document, ref, kIndicesAttribute);
+  const std::size_t count = accessor < 0 ? vertex_count(document, ref) : accessor_count(document, accessor);
+  if (mode < TINYGLTF_MODE_TRIANGLES) return 0;
+  return mode == TINYGLTF_MODE_TRIANGLES ? count % 3 : count < 3 ? count : 0;
 }
 
 std::optional<Mesh> read_primitive(const GltfDocument& document, const GltfPrimitiveRef& ref) {

@@ -42,6 +42,9 @@ std::vector<Vec4f> read_colors(const GltfDocument& document, const GltfPrimitive
 // read_positions, which finds out whether there are as many vertices as the file says.
 std::optional<std::vector<Triangle>> read_triangles(const GltfDocument& document, const GltfPrimitiveRef& ref);
 
+// Corners at the end that make no triangle.
+std::size_t spare_corners(const GltfDocument& document, const GltfPrimitiveRef& ref);
+
 // All of these as a mesh: normals, tangents, uv and colors empty where absent, material -1 where none is given.
 // Absent for points, lines, and primitives without positions.
 std::optional<Mesh> read_primitive(const GltfDocument& document, const GltfPrimitiveRef& ref);

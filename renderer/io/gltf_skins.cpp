@@ -8,6 +8,7 @@
 
 #include "renderer/core/world_limits.h"
 #include "renderer/io/gltf_accessors.h"
+#include "renderer/io/gltf_nodes.h"
 #include "renderer/io/mesh_vertices.h"
 
 namespace chiaro::renderer {
@@ -28,7 +29,11 @@ std::vector<InfluenceSet> read_influences(const GltfDocument& document, const Gl
   std::vector<InfluenceSet> sets;
   for (int n = 0;; ++n) {
     const std::string joints = fmt::format("JOINTS_{}", n), weights = fmt::format("WEIGHTS_{}", n);
-    if (find_attribute(document, ref, joints) < 0 || find_attribute(document, ref, weights) < 0) return sets;
+    const bool has_joints = find_attribute(document, ref, joints) >= 0;
+    if (has_joints != (find_attribute(document, ref, weights) >= 0)) {
+      fail(document, place_of(ref), fmt::format("has one of {} and {}", joints, weights), "both or none");
+    }
+    if (!has_joints) return sets;
     sets.push_back({read_vec4_attribute(document, ref, joints), read_vec4_attribute(document, ref, weights)});
   }
 }
@@ -103,6 +108,8 @@ std::vector<Mat4f> world_from_bind(const GltfDocument& document, int skin, const
   for (std::size_t j = 0; j < transforms.size(); ++j) {
     transforms[j] = world_from_nodes[std::size_t(source.joints[j])];
     if (inverse_bind.empty()) continue;
+    const auto matrix = inverse_bind.begin() + std::ptrdiff_t(16 * j);
+    check_affine(document, {matrix, matrix + 16}, fmt::format("{}.inverseBindMatrices[{}]", place, j));
     Mat4f bind;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)
@@ -116,7 +123,7 @@ std::vector<Mat4f> world_from_bind(const GltfDocument& document, int skin, const
 }
 
 bool has_joints(const GltfDocument& document, const GltfPrimitiveRef& ref) {
-  return find_attribute(document, ref, "JOINTS_0") >= 0 && find_attribute(document, ref, "WEIGHTS_0") >= 0;
+  return find_attribute(document, ref, "JOINTS_0") >= 0 || find_attribute(document, ref, "WEIGHTS_0") >= 0;
 }
 
 std::size_t skin_mesh(const GltfDocument& document, const GltfPrimitiveRef& ref,

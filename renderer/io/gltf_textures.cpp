@@ -14,9 +14,18 @@
 namespace chiaro::renderer {
 namespace {
 
-Wrap wrap_of(int mode) {
-  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClampToEdge;
-  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirroredRepeat : Wrap::kRepeat;
+Wrap wrap_of(const GltfDocument& document, int sampler, const char* name, int mode) {
+  switch (mode) {
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Wrap::kClampToEdge;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return Wrap::kMirroredRepeat;
+    case TINYGLTF_TEXTURE_WRAP_REPEAT:
+      return Wrap::kRepeat;
+    default:
+      fail(document, fmt::format("samplers[{}].{}", sampler, name), fmt::format("is {}", mode),
+           "33071 (to the edge), 33648 (mirrored) or 10497 (repeated)");
+  }
 }
 
 int image_of(const tinygltf::Texture& texture) {
@@ -72,8 +81,8 @@ int GltfTextureList::add(const GltfDocument& document, int texture, const std::s
   if (source.sampler >= 0) {
     const tinygltf::Sampler& sampler = document.model->samplers[source.sampler];
     entry.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-    entry.wrap_u = wrap_of(sampler.wrapS);
-    entry.wrap_v = wrap_of(sampler.wrapT);
+    entry.wrap_u = wrap_of(document, source.sampler, "wrapS", sampler.wrapS);
+    entry.wrap_v = wrap_of(document, source.sampler, "wrapT", sampler.wrapT);
   }
   const auto found = std::find(entries_.begin(), entries_.end(), entry);
   if (found != entries_.end()) return int(found - entries_.begin());

@@ -44,52 +44,84 @@ std::vector<SceneNode> hierarchy_of(const std::vector<PlacedNode>& placed) {
   return nodes;
 }
 
-void check_vertices(const GltfDocument& document, const PlacedNode& node, const Mesh& mesh, const Mat4f& transform) {
-  for (const Vec3f& p : mesh.positions) check_in_world(document, node, transform_point(transform, p), "a vertex");
-}
-
-void add_instance(const GltfDocument& document, const PlacedNode& node, int index, const Mat4f& transform,
-                  Scene& scene) {
-  const Mesh& mesh = scene.meshes[std::size_t(index)];
-  check_vertices(document, node, mesh, transform);
-  scene.instances.push_back({instance_name(node, mesh), index, transform, node.node});
-}
-
 // Everything comes to one place.
 bool is_point(const Mat4f& transform) {
   return std::all_of(transform.m.begin(), transform.m.begin() + 12, [](float entry) { return entry == 0; });
 }
 
-// Of transforms that have no inverse, as scales of zero, or none in floats. Adds nothing where no area is left.
-void add_as_mesh_of_its_own(const GltfDocument& document, const PlacedNode& node, int index, const Mat4f& transform,
-                            Scene& scene) {
-  if (is_point(transform)) return;
-  check_vertices(document, node, scene.meshes[std::size_t(index)], transform);
-  std::optional<Mesh> mesh = mesh_in_world(scene, index, transform);
-  if (!mesh) return;
-  scene.meshes.push_back(*std::move(mesh));
-  add_instance(document, node, int(scene.meshes.size()) - 1, Mat4f{}, scene);
+// Nodes may share the positions of their instances, so that a small file could ask for any number.
+std::size_t most_instances(const GltfDocument& document) {
+  std::size_t most = std::size_t{1} << 20;
+  for (const std::string& buffer : document.buffers) most += buffer.size();
+  return most;
 }
 
-// Returns how many copies, scaled to nothing, were left out.
-std::size_t add_instances(const GltfDocument& document, const PlacedNode& node, const NodeMeshes& meshes,
-                          Scene& scene) {
-  std::size_t left_out = 0;
-  for (const int mesh : meshes.in_world) add_instance(document, node, mesh, Mat4f{}, scene);
-  for (const Mat4f& transform : instance_transforms(document, node)) {
-    const bool invertible = std::isnormal(determinant3(transform));
-    const std::size_t before = scene.instances.size();
-    for (const int mesh : meshes.in_node) {
-      if (invertible) {
-        add_instance(document, node, mesh, transform, scene);
-      } else {
-        add_as_mesh_of_its_own(document, node, mesh, transform, scene);
+class InstanceList {
+ public:
+  InstanceList(const GltfDocument& document, Scene& scene)
+      : document_(document), scene_(scene), most_(most_instances(document)) {}
+
+  void add(const PlacedNode& node, const NodeMeshes& meshes) {
+    for (const int mesh : meshes.in_world) add_instance(node, mesh, Mat4f{});
+    const std::vector<Mat4f> transforms = instance_transforms(document_, node);
+    check_count(node, scene_.instances.size() + transforms.size() * meshes.in_node.size());
+    for (const Mat4f& transform : transforms) {
+      const bool invertible = std::isnormal(determinant3(transform));
+      const std::size_t before = scene_.instances.size();
+      for (const int mesh : meshes.in_node) {
+        if (invertible) {
+          add_instance(node, mesh, transform);
+        } else {
+          add_as_mesh_of_its_own(node, mesh, transform);
+        }
       }
+      left_out_ += !meshes.in_node.empty() && scene_.instances.size() == before ? 1 : 0;
     }
-    left_out += !meshes.in_node.empty() && scene.instances.size() == before ? 1 : 0;
   }
-  return left_out;
-}
+
+  // Copies that are scaled to nothing.
+  std::size_t left_out() const { return left_out_; }
+
+ private:
+  void check_count(const PlacedNode& node, std::size_t count) const {
+    if (count <= most_) return;
+    fail(document_, place_of(node), fmt::format("makes {} instances of what is in the file", count),
+         fmt::format("at most {}, as many as there is data and a million", most_));
+  }
+
+  void check_vertices(const PlacedNode& node, int index, const Mat4f& transform) {
+    const Mesh& mesh = scene_.meshes[std::size_t(index)];
+    if (mesh_bounds_.size() < scene_.meshes.size()) mesh_bounds_.resize(scene_.meshes.size());
+    std::optional<Box3f>& bounds = mesh_bounds_[std::size_t(index)];
+    if (!bounds) {
+      bounds.emplace();
+      for (const Vec3f& p : mesh.positions) bounds->extend(is_finite(p) ? p : Vec3f{kInfinity, kInfinity, kInfinity});
+    }
+    const Box3f moved = transform_box(transform, *bounds);
+    if (in_world(moved.min) && in_world(moved.max)) return;
+    for (const Vec3f& p : mesh.positions) check_in_world(document_, node, transform_point(transform, p), "a vertex");
+  }
+
+  void add_instance(const PlacedNode& node, int index, const Mat4f& transform) {
+    check_vertices(node, index, transform);
+    scene_.instances.push_back({instance_name(node, scene_.meshes[std::size_t(index)]), index, transform, node.node});
+  }
+
+  // Of transforms that have no inverse, as scales of zero, or none in floats. Adds nothing where no area is left.
+  void add_as_mesh_of_its_own(const PlacedNode& node, int index, const Mat4f& transform) {
+    if (is_point(transform)) return;
+    check_vertices(node, index, transform);
+    std::optional<Mesh> mesh = mesh_in_world(scene_, index, transform);
+    if (!mesh) return;
+    scene_.meshes.push_back(*std::move(mesh));
+    add_instance(node, int(scene_.meshes.size()) - 1, Mat4f{});
+  }
+
+  const GltfDocument& document_;
+  Scene& scene_;
+  std::size_t most_, left_out_ = 0;
+  std::vector<std::optional<Box3f>> mesh_bounds_;
+};
 
 void check_size(const GltfDocument& document, const Box3f& bounds) {
   const float across = bounds.diagonal();
@@ -126,6 +158,8 @@ void warn_of_repairs(const NodeMeshList& meshes, std::size_t left_out, std::vect
        "texture coordinates or colours that are not finite are replaced");
   warn(warnings, repairs.bad_skin_weights, "vertex has skin weights that do not add up to 1; they are mended",
        "vertices have skin weights that do not add up to 1; they are mended");
+  warn(warnings, repairs.spare_corners, "corner at the end of a list makes no triangle and is left out",
+       "corners at the ends of lists make no triangle and are left out");
   warn(warnings, meshes.without_triangles, "primitive without triangles (points, lines) is left out",
        "primitives without triangles (points, lines) are left out");
   warn(warnings, left_out, "instance scaled to nothing is left out", "instances scaled to nothing are left out");
@@ -151,15 +185,14 @@ LoadedScene load_gltf(const std::filesystem::path& path, const LoadOptions& opti
   const std::vector<PlacedNode> nodes = place_nodes(document, pose);
   scene.nodes = hierarchy_of(nodes);
   const NodeMeshList meshes = read_node_meshes(document, nodes, {world_from_nodes(document, pose), variant}, scene);
-  std::size_t left_out = 0;
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    left_out += add_instances(document, nodes[n], meshes.of_node[n], scene);
+  InstanceList instances(document, scene);
+  for (std::size_t n = 0; n < nodes.size(); ++n) instances.add(nodes[n], meshes.of_node[n]);
   if (!scene.instances.empty()) {
     const Box3f box = bounds(scene);
     check_size(document, box);
     check_spacing(document, box, loaded.warnings);
   }
-  warn_of_repairs(meshes, left_out, loaded.warnings);
+  warn_of_repairs(meshes, instances.left_out(), loaded.warnings);
   const std::vector<std::string> missing = warnings_of_missing_coordinates(scene);
   loaded.warnings.insert(loaded.warnings.end(), missing.begin(), missing.end());
   if (scene.materials.empty()) scene.materials.push_back(default_material());

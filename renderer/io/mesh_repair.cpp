@@ -119,6 +119,7 @@ MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
   bad_tangent_meshes += other.bad_tangent_meshes;
   bad_coordinates += other.bad_coordinates;
   bad_skin_weights += other.bad_skin_weights;
+  spare_corners += other.spare_corners;
   return *this;
 }
 

@@ -16,6 +16,7 @@ struct MeshRepairs {
   std::size_t bad_tangent_meshes = 0;    // made without
   std::size_t bad_coordinates = 0;       // texture coordinates and colours that are not finite, replaced
   std::size_t bad_skin_weights = 0;      // vertices of skins whose weights were mended
+  std::size_t spare_corners = 0;         // of no triangle, dropped
   MeshRepairs& operator+=(const MeshRepairs& other);
 };
 

@@ -88,6 +88,7 @@ class JobRunner {
     if (!posed) return result;
     result.in_world = posed->in_world;
     result.repairs.bad_skin_weights = posed->mended_skin_weights;
+    result.repairs.spare_corners = spare_corners(document_, job.ref);
     result.mesh = std::move(posed->mesh);
     result.mesh->material = material_in_variant(document_, job.ref, variant_, result.mesh->material);
     repair_mesh(*result.mesh, result.repairs);

@@ -62,12 +62,36 @@ void add(Fingerprint& f, const Texture& texture) {
   if (is_wide(texture)) add(f, texture.wide_rgba);
 }
 
-void extend_around(const Scene& scene, const Instance& instance, Box3f& box) {
-  const Mesh& mesh = scene.meshes[instance.mesh];
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) box.extend(transform_point(instance.world_from_object, mesh.positions[v]));
+// Around the triangles of instances.
+class InstanceBounds {
+ public:
+  explicit InstanceBounds(const Scene& scene) : scene_(scene), of_mesh_(scene.meshes.size()) {}
+
+  void extend_around(const Instance& instance) {
+    const Mesh& mesh = scene_.meshes[instance.mesh];
+    std::optional<Box3f>& of_mesh = of_mesh_[instance.mesh];
+    if (!of_mesh) of_mesh = around(mesh, Mat4f{});
+    if (box_.encloses(transform_box(instance.world_from_object, *of_mesh))) return;
+    const Box3f box = around(mesh, instance.world_from_object);
+    box_.extend(box.min);
+    box_.extend(box.max);
   }
-}
+
+  Box3f box() const { return box_; }
+
+ private:
+  static Box3f around(const Mesh& mesh, const Mat4f& transform) {
+    Box3f box;
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t v : triangle) box.extend(transform_point(transform, mesh.positions[v]));
+    }
+    return box;
+  }
+
+  const Scene& scene_;
+  std::vector<std::optional<Box3f>> of_mesh_;
+  Box3f box_;
+};
 
 }  // namespace
 
@@ -80,17 +104,17 @@ bool belongs_to(const Scene& scene, const Instance& instance, const std::string&
 }
 
 Box3f bounds(const Scene& scene) {
-  Box3f box;
-  for (const Instance& instance : scene.instances) extend_around(scene, instance, box);
-  return box;
+  InstanceBounds bounds(scene);
+  for (const Instance& instance : scene.instances) bounds.extend_around(instance);
+  return bounds.box();
 }
 
 Box3f bounds_of_node(const Scene& scene, const std::string& name) {
-  Box3f box;
+  InstanceBounds bounds(scene);
   for (const Instance& instance : scene.instances) {
-    if (belongs_to(scene, instance, name)) extend_around(scene, instance, box);
+    if (belongs_to(scene, instance, name)) bounds.extend_around(instance);
   }
-  return box;
+  return bounds.box();
 }
 
 std::string fingerprint(const Scene& scene) {

@@ -121,6 +121,17 @@ TEST(Vec, FramesAreOrthonormalAndRightHanded) {
   }
 }
 
+TEST(Vec, TransformedBoxesHoldWhatIsTransformedToTheLastBit) {
+  Sampler sampler(5, 0, 0);
+  for (std::uint32_t number = 0; number < 100; ++number) {
+    Box3f box;
+    std::vector<Vec3f> points(100);
+    for (Vec3f& p : points) box.extend(p = 1e3F * random_vec(sampler));
+    const Mat4f m = random_affine(number, number % 2 == 0);
+    for (const Vec3f p : points) EXPECT_TRUE(transform_box(m, box).contains(transform_point(m, p)));
+  }
+}
+
 TEST(Vec, BoxesHoldWhatTheyWereExtendedBy) {
   Box3f box;
   EXPECT_TRUE(box.empty());

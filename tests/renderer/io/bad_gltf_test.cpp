@@ -83,6 +83,42 @@ const BadCase kBadCases[] = {
            g.add_accessor<std::uint8_t>({1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0}, 4, kUnsignedByte);
      },
      "COLOR_0: has whole numbers that are not normalized"},
+    {"NormalsOfWholeNumbers",
+     [](GltfBuilder& g) {
+       g.primitive()["attributes"]["NORMAL"] = g.add_accessor<std::int8_t>({0, 0, 9, 0, 0, 9, 0, 0, 9}, 3, kByte);
+     },
+     "NORMAL: has whole numbers that are not normalized"},
+    {"MatrixAndScale",
+     [](GltfBuilder& g) {
+       g.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+       g.root["nodes"][0]["scale"] = {2, 2, 2};
+     },
+     "nodes[0]: has a matrix and a scale (expected one or the other)"},
+    {"RotationOfNoDirection",
+     [](GltfBuilder& g) {
+       g.root["nodes"][0]["rotation"] = {0, 0, 0, 0};
+     },
+     "nodes[0].rotation: is of no direction"},
+    {"InstanceOfNoDirection",
+     [](GltfBuilder& g) {
+       const int rotations = g.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 0}, 4, kFloat);
+       g.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"] = rotations;
+     },
+     "nodes[0]: instance 1 is not finite"},
+    {"UnknownWrap",
+     [](GltfBuilder& g) {
+       g.root["images"] = J::array({{{"uri", "t.png"}}});
+       g.root["samplers"] = J::array({{{"wrapT", 10496}}});
+       g.root["textures"] = J::array({{{"source", 0}, {"sampler", 0}}});
+       g.root["materials"] = J::array({{{"normalTexture", {{"index", 0}}}}});
+     },
+     "samplers[0].wrapT: is 10496"},
+    {"WeightsOfOtherMorphTargets",
+     [](GltfBuilder& g) {
+       g.primitive()["targets"] = J::array({{{"POSITION", 0}}});
+       g.root["meshes"][0]["weights"] = {0.5, 0.5};
+     },
+     "meshes[0].primitives[0]: has 1 morph targets (expected 2, as there are weights)"},
     {"HugeScale",
      [](GltfBuilder& g) {
        g.root["nodes"][0]["scale"] = {1e39, 1, 1};
@@ -147,6 +183,24 @@ const BadCase kBadCases[] = {
                                            {"values", {{"bufferView", values}}}};
      },
      "accessors[0].sparse.indices: 3 is out of range"},
+    {"SparseIndicesOutOfOrder",
+     [](GltfBuilder& g) {
+       const int indices = g.add_view(bytes_of<std::uint8_t>({1, 1}));
+       const int values = g.add_view(bytes_of<float>({5, 0, 0, 6, 0, 0}));
+       g.root["accessors"][0]["sparse"] = {{"count", 2},
+                                           {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
+                                           {"values", {{"bufferView", values}}}};
+     },
+     "accessors[0].sparse.indices: 1 comes after 1"},
+    {"SparseOffsetOf33Bits",
+     [](GltfBuilder& g) {
+       const int view = g.add_view(bytes_of<float>({0, 0, 0}));
+       g.root["accessors"][0]["sparse"] = {
+           {"count", 1},
+           {"indices", {{"bufferView", view}, {"componentType", kUnsignedByte}, {"byteOffset", 1ULL << 32}}},
+           {"values", {{"bufferView", view}}}};
+     },
+     "accessors[0].sparse.indices.byteOffset: is 4294967296"},
     {"UnknownMode", [](GltfBuilder& g) { g.primitive()["mode"] = 7; }, "mode"},
     {"MissingTexture",
      [](GltfBuilder& g) {
@@ -192,6 +246,13 @@ const BadCase kBadCases[] = {
        g.root["nodes"][0]["translation"] = {0, 1.5e9, 0};
      },
      "nodes[0]: puts a light at 0, 1.5e+09, 0"},
+    {"ManyInstancesOfLittleData",
+     [](GltfBuilder& g) {
+       const int accessor = g.add_accessor({{"componentType", kFloat}, {"count", 65000}, {"type", "VEC3"}});
+       const J instancing{{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", accessor}}}}}};
+       for (int i = 0; i < 20; ++i) g.add_node({{"mesh", 0}, {"extensions", instancing}});
+     },
+     "nodes[17]: makes 1105001 instances of what is in the file (expected at most 1048"},
     {"AlphaMode",
      [](GltfBuilder& g) {
        g.root["materials"] = J::array({{{"alphaMode", "GLOW"}}});
@@ -223,9 +284,10 @@ TEST(BadGltfBytes, EveryTruncationIsRefused) {
 
 TEST(BadGltfBytes, WhatIsNotAGltfIsRefused) {
   const TemporaryFolder folder;
+  const std::string twice = R"({"asset":{"version":"2.0"},"scene":0,"scene":1})";
   const std::string deep = R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '[');
   for (const std::string& bytes : {std::string("not a scene"), std::string(), std::string("{"), std::string("[]"),
-                                   std::string("{\"asset\":{\"version\":\"2.0\"},\"scene\":1e999}"), deep}) {
+                                   std::string("{\"asset\":{\"version\":\"2.0\"},\"scene\":1e999}"), deep, twice}) {
     const auto path = folder.write("bad.gltf", bytes);
     EXPECT_NE(error_of([&] { renderer::load_gltf(path); }), "") << bytes.substr(0, 40);
     EXPECT_NE(error_of([&] { renderer::save_gltf_with_lights(path, {}, folder / "out.glb", {}); }), "");

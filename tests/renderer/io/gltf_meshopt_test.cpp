@@ -188,6 +188,20 @@ TEST(Meshopt, QuaternionsOfInstances) {
   EXPECT_LT(length(turned(3, {1, 0, 0}) - Vec3f{-1, 0, 0}), 1e-3F);
 }
 
+TEST(Meshopt, AViewThatContradictsItsCompressionIsRefused) {
+  for (const auto& [name, value] : {std::pair("byteStride", 16), {"byteLength", 96}}) {
+    GltfBuilder gltf = packed_scene(true);
+    finish(gltf);
+    for (auto& view : gltf.root["bufferViews"]) {
+      if (view.contains("extensions")) view[name] = value;
+    }
+    const TemporaryFolder folder;
+    const std::string message = error_of([&] { load_gltf(folder.write("scene.glb", gltf.glb())); });
+    EXPECT_NE(message.find(std::string("].") + name + ": is"), std::string::npos) << message;
+    EXPECT_NE(message.find("as EXT_meshopt_compression has it"), std::string::npos) << message;
+  }
+}
+
 TEST(Meshopt, DamagedDataAreRefusedOrReadButNeverCrash) {
   GltfBuilder gltf = packed_scene(false);
   std::size_t refused = 0, tried = 0;

@@ -146,9 +146,41 @@ TEST(Skins, TooFewBindMatricesAreRefused) {
   EXPECT_NE(error_of([&] { load(gltf); }).find("skins[0].inverseBindMatrices: has 2 matrices"), std::string::npos);
 }
 
+TEST(Skins, TransposedBindMatricesAreRefused) {
+  GltfBuilder gltf = skinned_triangle();
+  const std::vector<float> transposed{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -5, 0, 0, 0, 1};
+  std::vector<float> bind = translation_matrix(0, 0, 0);
+  bind.insert(bind.end(), transposed.begin(), transposed.end());
+  const int view = gltf.add_view(bytes_of(bind));
+  gltf.root["skins"][0]["inverseBindMatrices"] =
+      gltf.add_accessor(ordered_json{{"bufferView", view}, {"componentType", kFloat}, {"count", 2}, {"type", "MAT4"}});
+  EXPECT_NE(error_of([&] { load(gltf); }).find("skins[0].inverseBindMatrices[1]: element 11 is -5"), std::string::npos)
+      << error_of([&] { load(gltf); });
+}
+
+TEST(Skins, JointsThatAreNoWholeNumbersAreRefused) {
+  for (const bool normalized : {false, true}) {
+    GltfBuilder gltf = skinned_triangle();
+    gltf.primitive()["attributes"]["JOINTS_0"] =
+        normalized ? gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 4, kUnsignedByte, true)
+                   : gltf.add_accessor<float>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 4, kFloat);
+    EXPECT_NE(error_of([&] { load(gltf); }).find("attributes.JOINTS_0: has no whole numbers as they are"),
+              std::string::npos);
+  }
+}
+
+TEST(Skins, JointsWithoutWeightsAreRefused) {
+  for (const char* missing : {"JOINTS_0", "WEIGHTS_0"}) {
+    GltfBuilder gltf = skinned_triangle();
+    gltf.primitive()["attributes"].erase(missing);
+    EXPECT_NE(error_of([&] { load(gltf); }).find("has one of JOINTS_0 and WEIGHTS_0"), std::string::npos);
+  }
+}
+
 TEST(Skins, MeshesWithoutJointsStayWithTheirNode) {
   GltfBuilder gltf = skinned_triangle();
   gltf.primitive()["attributes"].erase("JOINTS_0");
+  gltf.primitive()["attributes"].erase("WEIGHTS_0");
   expect_near(load(gltf).scene.instances.at(0).world_from_object.column(3), {100, 0, 0});
 }
 

@@ -163,6 +163,14 @@ TEST(GltfMeshes, TrianglesWithoutAreaAreDroppedAndCounted) {
   EXPECT_TRUE(mentions(loaded.warnings, "2 triangles of zero area"));
 }
 
+TEST(LoadGltf, CornersThatMakeNoTriangleAreLeftOutWithAWarning) {
+  GltfBuilder gltf = triangle_scene();
+  gltf.primitive()["indices"] = gltf.add_accessor<std::uint8_t>({0, 1, 2, 0, 1}, 1, kUnsignedByte);
+  const LoadedScene loaded = load(gltf);
+  EXPECT_EQ(loaded.scene.meshes.at(0).triangles.size(), 1U);
+  EXPECT_TRUE(mentions(loaded.warnings, "2 corners at the ends of lists make no triangle"));
+}
+
 TEST(GltfMeshes, NormalsWithoutDirectionAreReplaced) {
   GltfBuilder gltf = triangle_scene();
   const float nan = std::nanf("");

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/core/sampler.h"
+
 namespace chiaro::renderer {
 namespace {
 
@@ -40,6 +42,22 @@ Scene one_triangle() {
   scene.materials.resize(2);
   scene.materials[0].layers.emplace();
   return scene;
+}
+
+// Most instances lie within what the ones before take up.
+TEST(SceneBounds, AreAroundTheVerticesOfTheTrianglesOfAllInstances) {
+  Scene scene = one_triangle();
+  scene.meshes[0].positions.push_back({100, 100, 100});  // of no triangle
+  scene.instances.clear();
+  Sampler sampler(1, 0, 0);
+  Box3f expected;
+  for (int i = 0; i < 500; ++i) {
+    Mat4f transform;
+    for (float& entry : transform.m) entry = 2 * sampler.next_1d() - 1;
+    scene.instances.push_back({"", 0, transform, -1});
+    for (int v = 0; v < 3; ++v) expected.extend(transform_point(transform, scene.meshes[0].positions[std::size_t(v)]));
+  }
+  EXPECT_EQ(bounds(scene), expected);
 }
 
 // A cache of a scene that has changed in any of these would give wrong light without a word.
