@@ -38,11 +38,12 @@ struct Entry {
   Vec3f indirect;
 };
 
-// Where the visibility is no number, what is indirect is none either, for require_finite().
+// What no bake writes is no number, for require_transport().
 Entry entry_of(const float* pixel, const std::array<int, 4>& channels, float scale) {
-  const float visibility = pixel[channels[3]], part_of_number = std::isfinite(visibility) ? 0 : visibility;
-  return {std::uint8_t(visibility > 0.5F ? 1 : 0),
-          Vec3f{pixel[channels[2]] + part_of_number, pixel[channels[1]], pixel[channels[0]]} / scale};
+  const float visibility = pixel[channels[3]];
+  const Vec3f indirect{pixel[channels[2]], pixel[channels[1]], pixel[channels[0]]};
+  const bool is_transport = (visibility == 0 || visibility == 1) && min_component(indirect) >= 0;
+  return {std::uint8_t(visibility == 1), is_transport ? indirect / scale : Vec3f{NAN, NAN, NAN}};
 }
 
 renderer::ExrTiles shape_of(const TransportCache& cache, std::size_t first, std::size_t last) {
@@ -56,12 +57,12 @@ renderer::ExrTiles shape_of(const TransportCache& cache, std::size_t first, std:
 }
 
 // receivers: of the columns.
-void require_finite(const TransportCache& cache, std::span<const std::size_t> receivers, const std::string& file) {
+void require_transport(const TransportCache& cache, std::span<const std::size_t> receivers, const std::string& file) {
   const auto bad = std::find_if_not(cache.indirect.begin(), cache.indirect.end(), [](Vec3f v) { return is_finite(v); });
   if (bad == cache.indirect.end()) return;
   const auto i = std::size_t(bad - cache.indirect.begin());
   throw Error({file, fmt::format("light {}, receiver {}", i / receivers.size(), receivers[i % receivers.size()]),
-               "not a finite value", kNotACache});
+               "is no light transport: finite, not negative, and a visibility of 0 or 1", kNotACache});
 }
 
 // Receivers that are read at once, and where in the list those begin that are wanted of them.
@@ -276,7 +277,7 @@ TransportCache load_transport_cache(const std::filesystem::path& path,
   } else {
     read_scanlines(scanlines, *receivers, path, cache);
   }
-  require_finite(cache, *receivers, path.string());
+  require_transport(cache, *receivers, path.string());
   return cache;
 }
 

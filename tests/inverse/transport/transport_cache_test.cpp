@@ -321,15 +321,27 @@ TEST_F(TransportCacheFile, MissingAttributesAreRefusedByName) {
   }
 }
 
+// Of some light at some receiver.
+float& sample(renderer::ImageFile& file, const char* channel) {
+  const std::vector<std::string>& names = file.image.channel_names;
+  return file.image.pixels[4 * 40 + std::size_t(std::find(names.begin(), names.end(), channel) - names.begin())];
+}
+
 TEST_F(TransportCacheFile, PixelsThatAreNoNumbersOrChannelsThatLackAreRefused) {
-  save_edited([](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 2] = std::nanf(""); });
+  save_edited([](renderer::ImageFile& file) { sample(file, "indirect.G") = std::nanf(""); });
   expect_refused("a pixel that is not a number");
-  save_edited([](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 2] = renderer::kInfinity; });
+  save_edited([](renderer::ImageFile& file) { sample(file, "indirect.G") = renderer::kInfinity; });
   expect_refused("an infinite pixel");
   for (const float visibility : {std::nanf(""), renderer::kInfinity, -renderer::kInfinity}) {
-    save_edited([=](renderer::ImageFile& file) { file.image.pixels[4 * 40 + 3] = visibility; });
+    save_edited([=](renderer::ImageFile& file) { sample(file, "visibility") = visibility; });
     expect_refused("a visibility that is not finite");
   }
+  for (const float visibility : {-1.0F, 0.25F, 0.75F, 2.0F}) {
+    save_edited([=](renderer::ImageFile& file) { sample(file, "visibility") = visibility; });
+    expect_refused("a visibility that is neither 0 nor 1");
+  }
+  save_edited([](renderer::ImageFile& file) { sample(file, "indirect.B") = -0.5F; });
+  expect_refused("light that is negative");
   save_edited([](renderer::ImageFile& file) {
     for (std::string& name : file.image.channel_names) name = name == "indirect.G" ? "other" : name;
   });
