@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace chiaro;
   constexpr std::array kNames{"image.exr",  "image.png", "image.hdr", "image.jpg", "image.tif",
-                              "image.webp", "image.tga", "image.bmp", "image.ppm"};
+                              "image.webp", "image.tga", "image.pfm", "image.ppm"};
   if (size == 0) return 0;
   const std::string_view bytes = fuzz::text_of(data + 1, size - 1);
   const std::filesystem::path path = fuzz::input_file(kNames[data[0] % kNames.size()], bytes);
