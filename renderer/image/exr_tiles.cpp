@@ -1,6 +1,8 @@
 #include "renderer/image/exr_tiles.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
@@ -26,6 +28,7 @@
 
 #include "renderer/core/control.h"
 #include "renderer/core/error.h"
+#include "renderer/image/exr_chunks.h"
 #include "renderer/image/exr_header.h"
 #include "renderer/image/read_through_library.h"
 
@@ -181,6 +184,18 @@ Imf::FrameBuffer frame_buffer(const ExrTiles& shape, half* pixels, int first, in
   return buffer;
 }
 
+// Lines of channel after channel into pixels.
+void interleave(const char* lines, const Window& from, const Window& to, std::size_t channels, half* pixels) {
+  static_assert(std::endian::native == std::endian::little, "as OpenEXR stores samples");
+  for (int y = from.top; y < from.bottom; ++y) {
+    half* const line = pixels + (std::size_t(y - to.top) * to.width() + std::size_t(from.left - to.left)) * channels;
+    for (std::size_t c = 0; c < channels; ++c, lines += from.width() * sizeof(half)) {
+      for (std::size_t x = 0; x < from.width(); ++x)
+        std::memcpy(&line[x * channels + c], lines + x * sizeof(half), sizeof(half));
+    }
+  }
+}
+
 half to_half(float value) { return half(std::clamp(value, -float(HALF_MAX), float(HALF_MAX))); }
 
 }  // namespace
@@ -237,10 +252,31 @@ void ExrTileWriter::close() {
 }
 
 struct ExrTileReader::File {
-  explicit File(const std::filesystem::path& path) : input(path.c_str(), thread_count()) {}
+  explicit File(const std::filesystem::path& path) : input(path.c_str(), thread_count()), chunks(path) {}
 
   // Whole tiles; `window`: their pixels. False where any is missing or damaged.
   bool decode(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) {
+    return input.isComplete() ? unpack(shape, tiles, window, pixels) : search(shape, tiles, window, pixels);
+  }
+
+  // One chunk a tile.
+  bool unpack(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) const {
+    std::atomic<bool> whole = true;
+    parallel_for(tiles.area(), [&](std::size_t i) {
+      const int x = tiles.left + int(i % tiles.width()), y = tiles.top + int(i / tiles.width());
+      const Window of_tile = pixels_of(shape, {x, x + 1, y, y + 1});
+      const std::vector<char> bytes = whole ? chunks.read_tile(x, y) : std::vector<char>{};
+      if (bytes.size() != of_tile.area() * shape.channels.size() * sizeof(half)) {
+        whole = false;
+      } else {
+        interleave(bytes.data(), of_tile, window, shape.channels.size(), pixels);
+      }
+    });
+    return whole;
+  }
+
+  // In a file that is not finished, and does not say where its tiles are.
+  bool search(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) {
     try {
       input.setFrameBuffer(frame_buffer(shape, pixels, window.left, int(window.width()), window.top));
       input.readTiles(tiles.left, tiles.right - 1, tiles.top, tiles.bottom - 1);
@@ -251,6 +287,7 @@ struct ExrTileReader::File {
   }
 
   Imf::TiledInputFile input;
+  ExrChunks chunks;
 };
 
 bool ExrTileReader::is_tiled(const std::filesystem::path& path) {

@@ -14,6 +14,7 @@
 #include "renderer/core/first_line.h"
 #include "renderer/image/decode_samples.h"
 #include "renderer/image/encoded_image.h"
+#include "renderer/image/exr_chunks.h"
 #include "renderer/image/exr_header.h"
 #include "renderer/image/image_file.h"
 #include "renderer/image/image_orientation.h"
@@ -336,6 +337,11 @@ ImageFile read_image(const std::filesystem::path& path) {
   ImageFile file = header_of(opened, path);
   if (!may_hold(std::filesystem::file_size(path), opened.spec.image_bytes(true))) {
     throw Error({path.string(), "header", "has more pixels than such a file can hold", "a whole image"});
+  }
+  if (opened.format == "openexr") {
+    if (const auto damage = ExrChunks(path).find_damage(opened.part)) {
+      throw Error({path.string(), "pixels", *damage, "a whole file"});
+    }
   }
   const OIIO::ImageSpec spec = picture_spec(opened);
   Image image = make_image(spec.width, spec.height, std::move(file.image.channel_names));

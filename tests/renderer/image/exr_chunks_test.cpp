@@ -1,0 +1,80 @@
+#include "renderer/image/exr_chunks.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/sampler.h"
+#include "renderer/image/exr_tiles.h"
+#include "renderer/image/image_file.h"
+#include "tests/support/error_of.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chiaro::renderer {
+namespace {
+
+std::string numbers(const std::vector<std::uint32_t>& values) {
+  std::string bytes(4 * values.size(), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+// With nothing, deflated, in the place of the last chunk, which begins with these numbers and its size.
+std::string with_empty_last_chunk(const std::string& bytes, const std::vector<std::uint32_t>& place) {
+  const std::string begin = numbers(place), nothing("\x78\x9c\x03\0\0\0\0\1", 8);
+  for (std::size_t at = bytes.rfind(begin); at != std::string::npos && at > 0; at = bytes.rfind(begin, at - 1)) {
+    const std::size_t data = at + begin.size() + 4;
+    if (data > bytes.size() || bytes.substr(data - 4, 4) != numbers({std::uint32_t(bytes.size() - data)})) continue;
+    return bytes.substr(0, data - 4) + numbers({8}) + nothing;
+  }
+  ADD_FAILURE() << "no such chunk";
+  return bytes;
+}
+
+TEST(ExrChunks, LinesThatDoNotHoldAllTheirPixelsAreRefused) {
+  const test::TemporaryFolder folder;
+  Image image = make_image(8, 32, {"R", "G", "B"});
+  Sampler sampler(1, 0, 0);
+  for (float& value : image.pixels) value = sampler.next_1d();
+  const auto path = folder / "t.exr";
+  save_image(image, path, PixelType::kHalf);
+  EXPECT_EQ(ExrChunks(path).find_damage(0), std::nullopt);
+  folder.write("t.exr", with_empty_last_chunk(read_file(path), {16}));
+  EXPECT_EQ(ExrChunks(path).find_damage(0), "lines do not hold all their pixels");
+  EXPECT_NE(test::error_of([&] { load_image(path); }).find("t.exr: pixels: lines do not hold"), std::string::npos);
+}
+
+TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "t.exr";
+  const ExrTiles shape{.width = 8,
+                       .height = 8,
+                       .first_column = 0,
+                       .last_column = 8,
+                       .tile_width = 4,
+                       .tile_height = 4,
+                       .channels = {"a", "b"}};
+  ExrTileWriter writer(path, shape, {});
+  for (const int row : {0, 1}) writer.write(row, 0, 8, std::vector<float>(64, 0.5F));
+  writer.close();
+  std::vector<float> pixels(128);
+  EXPECT_EQ(ExrChunks(path).find_damage(0), std::nullopt);
+  EXPECT_EQ(ExrChunks(path).read_tile(1, 1).size(), 64U);
+  EXPECT_TRUE(ExrTileReader(path).read(0, 8, 0, 8, pixels));
+  folder.write("t.exr", with_empty_last_chunk(read_file(path), {1, 1, 0, 0}));
+  EXPECT_EQ(ExrChunks(path).find_damage(0), "a tile does not hold all its pixels");
+  EXPECT_TRUE(ExrChunks(path).read_tile(1, 1).empty());
+  EXPECT_FALSE(ExrTileReader(path).read(0, 8, 0, 8, pixels));
+  EXPECT_TRUE(ExrTileReader(path).read(0, 4, 0, 8, std::span(pixels).subspan(0, 64)));
+  EXPECT_NE(test::error_of([&] { load_image(path); }).find("t.exr: pixels: a tile does not hold"), std::string::npos);
+}
+
+TEST(ExrChunks, WhatIsNotThereIsNotItsConcern) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(ExrChunks(folder / "not there.exr").find_damage(0), std::nullopt);
+  EXPECT_TRUE(ExrChunks(folder / "not there.exr").read_tile(0, 0).empty());
+}
+
+}  // namespace
+}  // namespace chiaro::renderer
