@@ -12,6 +12,7 @@
 #include "renderer/core/first_line.h"
 #include "renderer/core/vec.h"
 #include "renderer/image/known_primaries.h"
+#include "renderer/image/ocio_config.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -20,16 +21,6 @@ namespace ocio = OCIO_NAMESPACE;
 
 constexpr std::size_t kPixelsPerTask = 65536;
 constexpr const char* kNoLook = "none";
-
-ocio::ConstConfigRcPtr load_config(const std::filesystem::path& path) {
-  try {
-    const ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(path.c_str());
-    config->validate();
-    return config;
-  } catch (const ocio::Exception& exception) {
-    throw Error({path.string(), "", first_line(exception.what()), "an OpenColorIO config"});
-  }
-}
 
 std::vector<std::string> color_spaces(const ocio::ConstConfigRcPtr& config) {
   std::vector<std::string> names;
@@ -183,6 +174,25 @@ void apply(const ocio::CPUProcessor& processor, std::vector<float>& rgb) {
   });
 }
 
+bool is_finite_color(const float* rgb) {
+  return std::isfinite(rgb[0]) && std::isfinite(rgb[1]) && std::isfinite(rgb[2]);
+}
+
+bool is_no_number(const float* rgb) { return std::isnan(rgb[0]) || std::isnan(rgb[1]) || std::isnan(rgb[2]); }
+bool is_not_finite(const float* rgb) { return !is_finite_color(rgb); }
+
+// As apply(). Error where finite colours become what they may not.
+void apply_to_frame(const ocio::CPUProcessor& processor, const std::filesystem::path& path,
+                    bool (*may_not)(const float*), std::vector<float>& rgb) {
+  std::vector<bool> finite(rgb.size() / 3);
+  for (std::size_t i = 0; i < finite.size(); ++i) finite[i] = is_finite_color(&rgb[3 * i]);
+  apply(processor, rgb);
+  for (std::size_t i = 0; i < finite.size(); ++i) {
+    if (!finite[i] || !may_not(&rgb[3 * i])) continue;
+    throw Error({path.string(), "", "makes colours that are not finite of finite ones", "a transform that works"});
+  }
+}
+
 using Triple = std::array<int, 3>;
 
 std::vector<float> gather(const Image& image, const Triple& channels) {
@@ -304,7 +314,7 @@ Image apply_display_view(const Image& image, const std::filesystem::path& config
   for (float& value : shown.pixels) {
     value = float(std::clamp(double(value) * gain, -double(kWhiteInAnyView), double(kWhiteInAnyView)));
   }
-  apply(*processor, shown.pixels);
+  apply_to_frame(*processor, config, is_no_number, shown.pixels);
   std::transform(shown.pixels.begin(), shown.pixels.end(), shown.pixels.begin(), display_value);
   return shown;
 }
@@ -312,7 +322,7 @@ Image apply_display_view(const Image& image, const std::filesystem::path& config
 Image to_rec709_from_display_view(const Image& image, const std::filesystem::path& config, const ViewOptions& options) {
   std::vector<float> rgb = rgb_of(image).pixels;
   const auto processor = inverse_view_processor(load_config(config), config, options);
-  apply(*processor, rgb);
+  apply_to_frame(*processor, config, is_not_finite, rgb);
   const float gain = std::exp2(-options.exposure);
   for (float& value : rgb) value *= gain;
   Image linear = image;
@@ -327,7 +337,7 @@ void convert_from_rec709(Image& image, const std::filesystem::path& config, cons
   const auto processor = cpu_processor(loaded, space_transform(loaded, config, space), config);
   for (const Triple& triple : color_triples(image, color_layers)) {
     std::vector<float> rgb = gather(image, triple);
-    apply(*processor, rgb);
+    apply_to_frame(*processor, config, is_not_finite, rgb);
     scatter(rgb, triple, image);
   }
 }
@@ -351,7 +361,8 @@ void convert_to_rec709(Image& image, const std::filesystem::path& config, const 
   std::vector<float> rgb = rgb_of(image).pixels;
   const ocio::ConstConfigRcPtr loaded = load_config(config);
   check_space(loaded, space, config);
-  apply(*cpu_processor(loaded, inverted(space_transform(loaded, config, space)), config), rgb);
+  const auto processor = cpu_processor(loaded, inverted(space_transform(loaded, config, space)), config);
+  apply_to_frame(*processor, config, is_not_finite, rgb);
   scatter(rgb, {0, 1, 2}, image);
 }
 

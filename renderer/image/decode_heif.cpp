@@ -39,21 +39,11 @@ void check(const heif_error& error, const std::string& file) {
   fail(file, fmt::format("cannot be decoded: {}", first_line(error.message)));
 }
 
-// ITU-T H.273, table 3: the curves that displays of a high range have, and none at all.
 const char* curve_of(const heif_image_handle* handle) {
   heif_color_profile_nclx* read = nullptr;
   if (heif_image_handle_get_nclx_color_profile(handle, &read).code != heif_error_Ok) return nullptr;
   const Profile profile(read);
-  switch (profile->transfer_characteristics) {
-    case heif_transfer_characteristic_linear:
-      return "linear";
-    case heif_transfer_characteristic_ITU_R_BT_2100_0_PQ:
-      return "PQ";
-    case heif_transfer_characteristic_ITU_R_BT_2100_0_HLG:
-      return "HLG";
-    default:
-      return nullptr;
-  }
+  return uncommon_curve(int(profile->transfer_characteristics));
 }
 
 class HeifReader {

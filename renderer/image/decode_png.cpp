@@ -16,6 +16,9 @@
 namespace chiaro::renderer {
 namespace {
 
+// PNG, third edition, section 11.3.2.6: primaries, curve, matrix and range by their numbers of ITU-T H.273.
+constexpr png_byte kCodePoints[] = "cICP";
+
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 
 // What libpng's callbacks reach. They leave by longjmp(), which passes over nothing that has a destructor.
@@ -50,6 +53,7 @@ void read_bytes(png_structp png, png_bytep to, png_size_t count) {
 // indices beyond them for black.
 void read_header(Reading& reading) {
   png_set_crc_action(reading.png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+  png_set_keep_unknown_chunks(reading.png, PNG_HANDLE_CHUNK_ALWAYS, kCodePoints, 1);
   png_read_info(reading.png, reading.info);
   reading.palette = png_get_color_type(reading.png, reading.info) == PNG_COLOR_TYPE_PALETTE;
   reading.palette ? png_set_packing(reading.png) : png_set_expand(reading.png);
@@ -89,9 +93,9 @@ class PngReader {
     run(read_header);
     const int width = int(png_get_image_width(reading_.png, reading_.info));
     const int height = int(png_get_image_height(reading_.png, reading_.info));
-    if (reading_.palette) return {width, height, palette().second.empty() ? 3 : 4, 1};
+    if (reading_.palette) return {width, height, palette().second.empty() ? 3 : 4, 1, curve()};
     return {width, height, png_get_channels(reading_.png, reading_.info),
-            png_get_bit_depth(reading_.png, reading_.info) / 8};
+            png_get_bit_depth(reading_.png, reading_.info) / 8, curve()};
   }
 
   // After the header.
@@ -104,6 +108,16 @@ class PngReader {
   }
 
  private:
+  const char* curve() {
+    png_unknown_chunkp chunks = nullptr;
+    const int count = png_get_unknown_chunks(reading_.png, reading_.info, &chunks);
+    for (const png_unknown_chunk& chunk : std::span(chunks, std::size_t(count))) {
+      const bool is_one = std::memcmp(chunk.name, kCodePoints, 4) == 0 && chunk.size == 4;
+      if (is_one) return uncommon_curve(chunk.data[1]);
+    }
+    return nullptr;
+  }
+
   // Colours, and how opaque the first of them are.
   std::pair<std::span<const png_color>, std::span<const png_byte>> palette() {
     png_colorp colors = nullptr;

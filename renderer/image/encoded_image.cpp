@@ -92,6 +92,7 @@ std::optional<std::string> damage_of_pnm(std::string_view bytes) {
   if (kind == "P4") return std::nullopt;
   if (kind != "P5" && kind != "P6" && kind != "PF" && kind != "Pf") return "is not a picture of bytes (P4, P5, P6, PF)";
   if (words.size() < 4) return "is truncated";
+  if (bytes.substr(kind.size()).starts_with("\r\n")) return "has line ends of two characters";
   const std::string problem = fmt::format("has samples of up to {}", words[3].substr(0, 20));
   if (kind == "PF" || kind == "Pf") {
     const std::optional<double> scale = number_of(words[3]);

@@ -89,12 +89,19 @@ bool has_colors(const OIIO::ImageSpec& spec) {
   return spec.channelindex("R") >= 0 && spec.channelindex("G") >= 0 && spec.channelindex("B") >= 0;
 }
 
+bool has_a_color(const OIIO::ImageSpec& spec) {
+  return spec.channelindex("R") >= 0 || spec.channelindex("G") >= 0 || spec.channelindex("B") >= 0;
+}
+
 // The first part with colours; where none has, the first: depth may come before them.
-int choose_part(OIIO::ImageInput& input, std::string_view format) {
+int choose_part(OIIO::ImageInput& input, std::string_view format, const std::string& file) {
   if (format != "openexr" || has_colors(input.spec())) return 0;
+  int parts_of_colors = has_a_color(input.spec()) ? 1 : 0;
   for (int part = 1; input.seek_subimage(part, 0); ++part) {
     if (has_colors(input.spec())) return part;
+    parts_of_colors += has_a_color(input.spec()) ? 1 : 0;
   }
+  if (parts_of_colors > 1) throw Error({file, "parts", "have one colour each", "red, green and blue in one part"});
   input.seek_subimage(0, 0);
   return 0;
 }
@@ -141,16 +148,16 @@ OpenImage open(const std::filesystem::path& path) {
   if (image.format == "openexr") damage = find_exr_header_damage(path);
   if (damage) throw Error({path.string(), "", *damage, "a whole image"});
   image.input = open_input(image, path);
-  image.part = choose_part(*image.input, image.format);
+  image.part = choose_part(*image.input, image.format, path.string());
   image.spec = image.input->spec();
   if (image.format == "hdr") image.radiance = read_radiance_header(path);
   return image;
 }
 
-// OpenImageIO makes fractions of the most that there could be of whole numbers, which identify things.
+// Whole numbers identify things.
 void check_color_types(const OpenImage& open, const std::string& file) {
   if (open.format != "openexr") return;
-  for (const char* const name : {"R", "G", "B"}) {
+  for (const char* const name : {"R", "G", "B", "Y"}) {
     const int c = open.spec.channelindex(name);
     if (c < 0 || open.spec.channelformat(c).is_floating_point()) continue;
     throw Error({file, std::string("channel ") + name, "has whole numbers", "half or full floats"});
@@ -182,7 +189,10 @@ OIIO::ImageSpec picture_spec(const OpenImage& open) {
 }
 
 int orientation_of(const OpenImage& open) {
-  return open.format == "openexr" ? 1 : open.spec.get_int_attribute("Orientation", 1);
+  const int orientation = open.format == "openexr" ? 1 : open.spec.get_int_attribute("Orientation", 1);
+  // OpenImageIO takes Radiance's "+X +Y" and "-X -Y" for one another.
+  const bool other_way = open.format == "hdr" && (orientation == 6 || orientation == 8);
+  return other_way ? 14 - orientation : orientation;
 }
 
 // The part of the picture that there are pixels of, as OpenEXR's data window within its display window.
@@ -232,7 +242,7 @@ ImageFile header_of(const OpenImage& open, const std::filesystem::path& path) {
   if (is_turned(orientation_of(open))) std::swap(file.image.width, file.image.height);
   const bool exr = open.format == "openexr";
   file.associated_alpha = has_associated_alpha(spec, open.format);
-  file.whole_numbers = !spec.format.is_floating_point();
+  file.whole_numbers = open.format != "openexr" && !spec.format.is_floating_point();
   file.srgb_curve =
       file.whole_numbers && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
   for (const OIIO::ParamValue& value : spec.extra_attribs) append_attribute(file.attributes, value, exr);
@@ -314,6 +324,16 @@ void read_pixels(OpenImage& open, const std::string& file, Image& image) {
   throw Error({file, "pixels", fmt::format("cannot be read: {}", first_line(message)), "a whole file"});
 }
 
+// OpenImageIO makes fractions of the most that there could be of OpenEXR's whole numbers.
+void restore_whole_numbers(const OIIO::ImageSpec& spec, Image& image) {
+  constexpr double kMost = 4294967295.0;
+  const std::size_t channels = std::size_t(image.channel_count());
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (spec.channelformat(int(c)).is_floating_point()) continue;
+    for (std::size_t i = c; i < image.pixels.size(); i += channels) image.pixels[i] = float(image.pixels[i] * kMost);
+  }
+}
+
 // The whole picture: black and transparent where there are no pixels of it, without those beyond its edges.
 Image in_window(const Image& part, const OIIO::ImageSpec& spec) {
   Image whole = make_image(spec.full_width, spec.full_height, part.channel_names);
@@ -346,6 +366,7 @@ ImageFile read_image(const std::filesystem::path& path) {
   const OIIO::ImageSpec spec = picture_spec(opened);
   Image image = make_image(spec.width, spec.height, std::move(file.image.channel_names));
   read_pixels(opened, path.string(), image);
+  if (opened.format == "openexr") restore_whole_numbers(opened.spec, image);
   if (opened.radiance) divide_by(opened.radiance->multiplied, image);
   file.image = upright(file.part ? in_window(image, spec) : std::move(image), orientation_of(opened));
   return file;

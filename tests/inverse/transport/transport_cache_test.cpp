@@ -306,6 +306,21 @@ TEST_F(TransportCacheFile, RegionsBeyondTheWorldAreRefused) {
   }
 }
 
+TEST_F(TransportCacheFile, RegionsWithoutAVolumeAreRefused) {
+  TransportCache cache = make_cache(1);
+  for (const float size : {1.0F, 0.0F}) {
+    cache.grid = {};
+    cache.grid.region = {{1, 1, 1}, {2, 1 + size, 2}};
+    cache.grid.origin = {1.5F, 1 + 0.5F * size, 1.5F};
+    cache.grid.counts = {1, 1, 1};
+    cache.grid.spacing = {1, size, 1};
+    cache.grid.light_of_node = {0};
+    const renderer::Attributes attributes = transport_cache_attributes(cache);
+    const std::string message = test::error_of([&] { transport_cache_from(attributes, 1, 1, "flat.exr"); });
+    EXPECT_EQ(message.empty(), size > 0) << message;
+  }
+}
+
 TEST_F(TransportCacheFile, MissingAttributesAreRefusedByName) {
   for (const char* name :
        {"kind", "format_version", "region_min", "grid_nodes", "scene_fingerprint", "indirect_scale"}) {

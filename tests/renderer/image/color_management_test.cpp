@@ -161,6 +161,82 @@ TEST(ColorManagement, BrokenConfigsAreRefusedInOneLine) {
   }
 }
 
+// A config whose default view is of "out", which is as told.
+std::string config_of(const std::string& out, const std::string& more_spaces = "") {
+  return "ocio_profile_version: 2\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+         "displays:\n  screen:\n    - !<View> {name: v, colorspace: out}\ncolorspaces:\n"
+         "  - !<ColorSpace> {name: lin_rec709}\n  - !<ColorSpace> {name: out, from_scene_reference: " +
+         out + "}\n" + more_spaces;
+}
+
+std::string error_of_view(const std::string& config) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("config.ocio", config);
+  return error_of([&] { apply_display_view({1, 1, {"R", "G", "B"}, {0.5F, 0.5F, 0.5F}}, path, {}); });
+}
+
+// OpenColorIO follows them until its stack or somebody's patience ends.
+TEST(ColorManagement, ConfigsThatReferToThemselvesAreRefused) {
+  const auto to = [](const std::string& space) {
+    return "!<ColorSpaceTransform> {src: lin_rec709, dst: " + space + "}";
+  };
+  const auto space = [](const std::string& name, const std::string& transform) {
+    return "  - !<ColorSpace> {name: " + name + ", from_scene_reference: " + transform + "}\n";
+  };
+  const std::string gamma = "!<ExponentTransform> {value: 2}";
+  EXPECT_EQ(error_of_view(config_of(to("a"), space("a", gamma))), "");
+  EXPECT_NE(error_of_view(config_of(to("out"))).find("colour space \"out\": refers to itself"), std::string::npos);
+  EXPECT_NE(error_of_view(config_of(to("a"), space("a", to("out")))).find("refers to itself"), std::string::npos);
+  EXPECT_NE(error_of_view(config_of(gamma, space("a", to("a")))).find("colour space \"a\": refers to itself"),
+            std::string::npos)
+      << "though nothing uses it";
+  EXPECT_NE(error_of_view("looks:\n  - !<Look> {name: l, process_space: lin_rec709, transform: !<LookTransform> {src: "
+                          "lin_rec709, dst: lin_rec709, looks: l}}\n" +
+                          config_of(gamma))
+                .find("look \"l\": refers to itself"),
+            std::string::npos);
+  std::string fan, chain;
+  for (int i = 0; i < 20; ++i) {
+    const std::string next = to("f" + std::to_string(i + 1));
+    fan += space("f" + std::to_string(i), "!<GroupTransform> {children: [" + next + ", " + next + "]}");
+  }
+  EXPECT_NE(error_of_view(config_of(to("f0"), fan + space("f20", gamma))).find("asks for more transforms"),
+            std::string::npos);
+  for (int i = 100; i > 0; --i)
+    chain += space("c" + std::to_string(i), i == 100 ? gamma : to("c" + std::to_string(i + 1)));
+  EXPECT_NE(error_of_view(config_of(to("c1"), chain)).find("refers to others"), std::string::npos);
+}
+
+TEST(ColorManagement, ConfigsThatRepeatThemselvesWithoutMeasureAreRefused) {
+  std::string spaces = "  - !<ColorSpace> {name: z0, from_scene_reference: &a0 !<ExponentTransform> {value: 1.01}}\n";
+  for (int i = 1; i < 9; ++i) {
+    const std::string alias = "*a" + std::to_string(i - 1), number = std::to_string(i);
+    spaces += "  - !<ColorSpace> {name: z" + number + ", from_scene_reference: &a" + number +
+              " !<GroupTransform> {children: [" + alias + ", " + alias + ", " + alias + "]}}\n";
+  }
+  EXPECT_NE(
+      error_of_view(config_of("!<ExponentTransform> {value: 2}", spaces)).find("repeats parts of itself 24 times"),
+      std::string::npos);
+}
+
+TEST(ColorManagement, TablesInPipesAndDevicesAreRefused) {
+  EXPECT_NE(error_of_view("search_path: .\n" + config_of("!<FileTransform> {src: /dev/zero}"))
+                .find("\"/dev/zero\": is not a file"),
+            std::string::npos);
+}
+
+TEST(ColorManagement, WhatMakesNoNumbersOfColoursIsRefused) {
+  EXPECT_NE(error_of_view(config_of("!<MatrixTransform> {offset: [.nan, 0, 0, 0]}")).find("not finite"),
+            std::string::npos);
+}
+
+// They are the config's words, escape sequences and all.
+TEST(ColorManagement, WarningsOfOpenColorIoAreNotPassedOn) {
+  testing::internal::CaptureStderr();
+  error_of_view("unknown_key: 1\n" + config_of("!<ExponentTransform> {value: 2, unknown: 3}"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(ColorManagement, OnlyTheLayersNamedAreConverted) {
   const TemporaryFolder folder;
   const auto config = folder.write("config.ocio", kConfig);

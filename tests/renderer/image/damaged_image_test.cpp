@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <map>
 #include <vector>
 
@@ -187,6 +188,26 @@ TEST(DamagedImage, AnExrWhoseColoursAreWholeNumbersIsRefused) {
   const std::string red_float("R\0\2\0\0\0", 6), red_whole("R\0\0\0\0\0", 6);
   const auto path = folder.write("whole.exr", replaced(read_file(folder / "float.exr"), red_float, red_whole));
   EXPECT_NE(error_of([&] { load_image(path); }).find("channel R: has whole numbers"), std::string::npos);
+}
+
+// OpenImageIO would make fractions of 2³² of them, of alpha and of what identifies things.
+TEST(DamagedImage, OtherWholeNumbersOfAnExrAreWhatTheyAre) {
+  const test::TemporaryFolder folder;
+  Image image = make_image(2, 1, {"R", "G", "B", "A"});
+  image.pixels = {0.5F, 0.5F, 0.5F, std::bit_cast<float>(1U), 0.5F, 0.5F, 0.5F, std::bit_cast<float>(12345U)};
+  save_image(image, folder / "float.exr", PixelType::kFloat);
+  const std::string alpha_float("A\0\2\0\0\0", 6), alpha_whole("A\0\0\0\0\0", 6);
+  const auto path = folder.write("whole.exr", replaced(read_file(folder / "float.exr"), alpha_float, alpha_whole));
+  const ImageFile read = load_image(path);
+  EXPECT_EQ(read.image.pixels, (std::vector<float>{0.5F, 0.5F, 0.5F, 1, 0.5F, 0.5F, 0.5F, 12345}));
+  EXPECT_FALSE(read.whole_numbers);
+}
+
+TEST(DamagedImage, AnExrWhoseColoursAreInPartsOfTheirOwnIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::string seed = read_file(CHIARO_SOURCE_DIR "/tests/fuzz/seeds/image_file/parts_of_one_colour");
+  const auto path = folder.write("parts.exr", seed.substr(1));
+  EXPECT_NE(error_of([&] { load_image(path); }).find("parts: have one colour each"), std::string::npos);
 }
 
 TEST(DamagedImage, ATiffWhosePixelsCannotBeUnpackedIsRefused) {

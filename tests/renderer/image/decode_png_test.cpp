@@ -110,6 +110,20 @@ TEST(DecodePng, SamplesOfEveryKindAreWhatOpenImageIoMakesOfThem) {
   EXPECT_EQ(image.pixels, (std::vector<float>{1, 1, 0, 0, 1, 0})) << "whatever the file is called";
 }
 
+// ITU-T H.273: 13 is sRGB, 8 is linear, 16 is PQ, 18 is HLG; textures have the curve that their material says.
+TEST(DecodePng, ACurveThatIsNotOfCommonDisplaysIsRefusedInPictures) {
+  const TemporaryFolder folder;
+  const auto with_curve = [](char curve) {
+    return png(kHeader + chunk("cICP", std::string("\x01") + curve + std::string("\0\1", 2)) + kPixels);
+  };
+  EXPECT_EQ(load_image(folder.write("t.png", with_curve(13))).image.width, 2);
+  for (const auto& [code, name] : {std::pair(8, "linear"), {16, "PQ"}, {18, "HLG"}}) {
+    const std::string message = error_of([&] { load_image(folder.write("t.png", with_curve(char(code)))); });
+    EXPECT_NE(message.find(std::string("colours: have the curve \"") + name), std::string::npos) << message;
+    EXPECT_EQ(decode_texture(with_curve(char(code)), "t").width, 2);
+  }
+}
+
 TEST(DecodePng, AttributesComeAlong) {
   const TemporaryFolder folder;
   const std::string text = chunk("tEXt", std::string("Author\0somebody", 15));

@@ -46,9 +46,9 @@ TEST(EncodedImage, APnmWhoseSamplesAreNotReadRightIsRefused) {
                              "PF\n2 2\n-1.0\n", "Pf\n2 2\n0.5\n"}) {
     EXPECT_EQ(find_damage("pnm", header), std::nullopt) << header;
   }
-  for (const char* header :
-       {"", "P6", "P6\n2 2\n", "P6\n2 2\n0\n", "P6\n2 2\n-5\n", "P6\n2 2\n40000\n", "P6\n2 2\n65536\n",
-        "P6\n2 2\n9.5\n", "P3\n2 2\n255\n", "PF\n2 2\n0\n", "PF\n2 2\nnan\n", "PF\n2 2\n1e99\n", "PF\n2 2\nx\n"}) {
+  for (const char* header : {"", "P6", "P6\n2 2\n", "P6\n2 2\n0\n", "P6\n2 2\n-5\n", "P6\n2 2\n40000\n",
+                             "P6\n2 2\n65536\n", "P6\n2 2\n9.5\n", "P3\n2 2\n255\n", "PF\n2 2\n0\n", "PF\n2 2\nnan\n",
+                             "PF\n2 2\n1e99\n", "PF\n2 2\nx\n", "PF4\n2 2\n-1.0\n", "PF\r\n2 2\r\n-1.0\r\n"}) {
     EXPECT_NE(find_damage("pnm", header), std::nullopt) << header;
   }
 }

@@ -35,6 +35,33 @@ TEST(RadianceHeader, ThePictureIsSeenUpright) {
   EXPECT_EQ(read(folder, picture("", "+Y 2 +X 1")), (std::vector<float>{8, 16, 32, 1, 2, 4}));
 }
 
+// Radiance's file formats: the first axis is that of the lines, + is to the right and upwards.
+TEST(RadianceHeader, ThePictureIsSeenUprightHoweverItIsStored) {
+  const TemporaryFolder folder;
+  constexpr int kWidth = 3, kHeight = 2;
+  const auto coordinate = [](char sign, char axis, int i) {
+    const int size = axis == 'X' ? kWidth : kHeight;
+    return (axis == 'X') == (sign == '+') ? i : size - 1 - i;  // from the left, from the top
+  };
+  for (const std::string order : {"-Y+X", "-Y-X", "+Y-X", "+Y+X", "+X-Y", "+X+Y", "-X+Y", "-X-Y"}) {
+    const int lines = order[1] == 'X' ? kWidth : kHeight, length = kWidth + kHeight - lines;
+    std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + order.substr(0, 2) + " " + std::to_string(lines) +
+                        " " + order.substr(2) + " " + std::to_string(length) + "\n";
+    for (int line = 0; line < lines; ++line) {
+      for (int i = 0; i < length; ++i) {
+        const int a = coordinate(order[0], order[1], line), b = coordinate(order[2], order[3], i);
+        const int pixel = order[1] == 'X' ? b * kWidth + a : a * kWidth + b;
+        bytes += std::string(3, char(0x80 + pixel)) + '\x80';
+      }
+    }
+    const Image image = load_image(folder.write("a.hdr", bytes)).image;
+    ASSERT_EQ(image.width, kWidth) << order;
+    for (int pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+      EXPECT_EQ(image.pixels[std::size_t(3 * pixel)], float(0x80 + pixel) / 256) << order << ", " << pixel;
+    }
+  }
+}
+
 // Of the primaries of ITU-R BT.2020: its green in Rec.709 (BT.2087: -.5876, 1.1329, -.1006).
 TEST(RadianceHeader, PrimariesAreThoseOfThePixels) {
   const TemporaryFolder folder;
