@@ -43,7 +43,7 @@ class Unpacked {
  private:
   exr_const_context_t file_;
   std::size_t size_;
-  exr_decode_pipeline_t decoding_ = EXR_DECODE_PIPELINE_INITIALIZER;
+  exr_decode_pipeline_t decoding_{};
   bool whole_ = false;
 };
 
