@@ -242,6 +242,20 @@ TEST(GltfNodes, CopiesWithoutVolumeAreLeftOut) {
   EXPECT_TRUE(mentions(loaded.warnings, "1 instance scaled to nothing"));
 }
 
+// Nodes that share the positions of their instances, of which nothing is in the file.
+TEST(GltfNodes, InstancesAreAsManyAsThereIsDataForAndAMillion) {
+  GltfBuilder gltf = triangle_scene();
+  const int accessor = gltf.add_accessor({{"componentType", kFloat}, {"count", 65000}, {"type", "VEC3"}});
+  const ordered_json instancing{{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", accessor}}}}}};
+  for (int i = 0; i < 16; ++i) gltf.add_node({{"mesh", 0}, {"extensions", instancing}});
+  EXPECT_EQ(load(gltf).scene.instances.size(), 1040001U);
+  gltf.add_node({{"mesh", 0}, {"extensions", instancing}});
+  const std::string message = error_of([&] { load(gltf); });
+  EXPECT_NE(message.find("nodes[17]: makes 1105001 instances of what is in the file (expected at most 1048612"),
+            std::string::npos)
+      << message;
+}
+
 TEST(GltfNodes, WhereFloatsAreCoarseIsToldOrRefused) {
   for (const auto& [away, told] : {std::pair(1e3, false), std::pair(2e4, true)}) {
     GltfBuilder gltf = triangle_scene();
