@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/error.h"
-#include "renderer/io/repeated_keys.h"
+#include "renderer/io/json_text.h"
 
 namespace chiaro::inverse {
 
@@ -59,7 +59,7 @@ bool read_bool(const JsonField& field) {
 }
 
 json parse_json(const std::string& text, const std::string& file, const std::string& expected) {
-  renderer::refuse_repeated_keys(text, file);
+  renderer::check_json_text(text, file);
   try {
     return json::parse(text);
   } catch (const json::exception& error) {

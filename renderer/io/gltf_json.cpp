@@ -7,7 +7,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/io/gltf_json_rules.h"
-#include "renderer/io/repeated_keys.h"
+#include "renderer/io/json_text.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -39,7 +39,7 @@ void check_depth(const std::string& text, const std::string& file) {
 
 json parse(const std::string& text, const std::string& file) {
   check_depth(text, file);
-  refuse_repeated_keys(text, file);
+  check_json_text(text, file);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {

@@ -19,7 +19,7 @@
 #include "renderer/io/gltf_document.h"
 #include "renderer/io/gltf_environment.h"
 #include "renderer/io/gltf_lights.h"
-#include "renderer/io/repeated_keys.h"
+#include "renderer/io/json_text.h"
 #include "renderer/io/short_decimal.h"
 
 namespace chiaro::renderer {
@@ -184,7 +184,7 @@ std::set<std::string> unknown_fields(const json& lights) {
 }
 
 json parse(const std::string& text, const std::string& file) {
-  refuse_repeated_keys(text, file);
+  check_json_text(text, file);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {

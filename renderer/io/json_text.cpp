@@ -1,9 +1,11 @@
-#include "renderer/io/repeated_keys.h"
+#include "renderer/io/json_text.h"
 
 #include <optional>
 #include <set>
+#include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "renderer/core/error.h"
@@ -51,7 +53,12 @@ class KeysOfObjects : public json::json_sax_t {
 
 }  // namespace
 
-void refuse_repeated_keys(const std::string& text, const std::string& file) {
+void check_json_text(const std::string& text, const std::string& file) {
+  constexpr std::string_view kPadding("\0 \t\r\n", 5);
+  const std::size_t end = text.find('\0');
+  if (end != std::string::npos && text.find_first_not_of(kPadding, end) != std::string::npos) {
+    throw Error({file, "JSON", fmt::format("goes on behind a NUL at byte {}", end), "text"});
+  }
   KeysOfObjects keys;
   json::sax_parse(text, &keys);
   if (keys.repeated()) throw Error({file, shortened(*keys.repeated(), 40), "is there twice in one object", "once"});
