@@ -53,7 +53,7 @@ bool is_whole(exr_const_context_t file, int part, const exr_chunk_info_t& chunk)
 
 bool is_whole_tile(exr_const_context_t file, int part, int x, int y) {
   exr_chunk_info_t chunk;
-  return exr_read_tile_chunk_info(file, part, x, y, 0, 0, &chunk) != EXR_ERR_SUCCESS || is_whole(file, part, chunk);
+  return exr_read_tile_chunk_info(file, part, x, y, 0, 0, &chunk) == EXR_ERR_SUCCESS && is_whole(file, part, chunk);
 }
 
 bool all_of(std::size_t count, const std::function<bool(std::size_t)>& holds) {
@@ -86,7 +86,7 @@ bool are_whole_lines(exr_const_context_t file, int part, const exr_attr_box2i_t&
   return all_of(std::size_t((window.max.y - first) / at_once + 1), [&](std::size_t i) {
     exr_chunk_info_t chunk;
     const int y = int(first + std::int64_t(i) * at_once);
-    return exr_read_scanline_chunk_info(file, part, y, &chunk) != EXR_ERR_SUCCESS || is_whole(file, part, chunk);
+    return exr_read_scanline_chunk_info(file, part, y, &chunk) == EXR_ERR_SUCCESS && is_whole(file, part, chunk);
   });
 }
 

@@ -19,8 +19,8 @@ class ExrChunks {
   // bytes first. Nothing where it is missing or damaged.
   std::vector<char> read_tile(int x, int y) const;
 
-  // What is wrong with the lines, or the tiles of the finest level, of a part; not of chunks that are not there or of a
-  // file that cannot be opened: readers tell more of those.
+  // What is wrong with the lines, or the tiles of the finest level, of a part. Nothing is where the file cannot be
+  // opened: readers tell more of that.
   std::optional<std::string> find_damage(int part) const;
 
  private:

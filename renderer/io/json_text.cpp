@@ -54,14 +54,13 @@ class KeysOfObjects : public json::json_sax_t {
 }  // namespace
 
 void check_json_text(const std::string& text, const std::string& file) {
-  constexpr std::string_view kPadding("\0 \t\r\n", 5);
-  const std::size_t end = text.find('\0');
-  if (end != std::string::npos && text.find_first_not_of(kPadding, end) != std::string::npos) {
-    throw Error({file, "JSON", fmt::format("goes on behind a NUL at byte {}", end), "text"});
-  }
+  constexpr std::string_view kFilling("\0 \t\r\n", 5);
   KeysOfObjects keys;
-  json::sax_parse(text, &keys);
+  const bool whole = json::sax_parse(text, &keys);
   if (keys.repeated()) throw Error({file, shortened(*keys.repeated(), 40), "is there twice in one object", "once"});
+  const std::size_t end = text.find('\0');
+  if (!whole || end == std::string::npos || text.find_first_not_of(kFilling, end) == std::string::npos) return;
+  throw Error({file, "JSON", fmt::format("goes on behind a NUL at byte {}", end), "text"});
 }
 
 }  // namespace chiaro::renderer

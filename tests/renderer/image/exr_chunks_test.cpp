@@ -20,13 +20,16 @@ std::string numbers(const std::vector<std::uint32_t>& values) {
   return bytes;
 }
 
-// With nothing, deflated, in the place of the last chunk, which begins with these numbers and its size.
-std::string with_empty_last_chunk(const std::string& bytes, const std::vector<std::uint32_t>& place) {
-  const std::string begin = numbers(place), nothing("\x78\x9c\x03\0\0\0\0\1", 8);
+const std::string kNothingDeflated("\x78\x9c\x03\0\0\0\0\1", 8);
+
+// With this in the place of the last chunk, which begins with these numbers and its size.
+std::string with_last_chunk(const std::string& bytes, const std::vector<std::uint32_t>& place,
+                            const std::string& contents) {
+  const std::string begin = numbers(place);
   for (std::size_t at = bytes.rfind(begin); at != std::string::npos && at > 0; at = bytes.rfind(begin, at - 1)) {
     const std::size_t data = at + begin.size() + 4;
     if (data > bytes.size() || bytes.substr(data - 4, 4) != numbers({std::uint32_t(bytes.size() - data)})) continue;
-    return bytes.substr(0, data - 4) + numbers({8}) + nothing;
+    return bytes.substr(0, data - 4) + numbers({std::uint32_t(contents.size())}) + contents;
   }
   ADD_FAILURE() << "no such chunk";
   return bytes;
@@ -40,9 +43,12 @@ TEST(ExrChunks, LinesThatDoNotHoldAllTheirPixelsAreRefused) {
   const auto path = folder / "t.exr";
   save_image(image, path, PixelType::kHalf);
   EXPECT_EQ(ExrChunks(path).find_damage(0), std::nullopt);
-  folder.write("t.exr", with_empty_last_chunk(read_file(path), {16}));
-  EXPECT_EQ(ExrChunks(path).find_damage(0), "lines do not hold all their pixels");
-  EXPECT_NE(test::error_of([&] { load_image(path); }).find("t.exr: pixels: lines do not hold"), std::string::npos);
+  const std::string whole = read_file(path);
+  for (const std::string& contents : {std::string(), kNothingDeflated}) {
+    folder.write("t.exr", with_last_chunk(whole, {16}, contents));
+    EXPECT_EQ(ExrChunks(path).find_damage(0), "lines do not hold all their pixels");
+    EXPECT_NE(test::error_of([&] { load_image(path); }).find("t.exr: pixels: lines do not hold"), std::string::npos);
+  }
 }
 
 TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
@@ -62,7 +68,7 @@ TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
   EXPECT_EQ(ExrChunks(path).find_damage(0), std::nullopt);
   EXPECT_EQ(ExrChunks(path).read_tile(1, 1).size(), 64U);
   EXPECT_TRUE(ExrTileReader(path).read(0, 8, 0, 8, pixels));
-  folder.write("t.exr", with_empty_last_chunk(read_file(path), {1, 1, 0, 0}));
+  folder.write("t.exr", with_last_chunk(read_file(path), {1, 1, 0, 0}, kNothingDeflated));
   EXPECT_EQ(ExrChunks(path).find_damage(0), "a tile does not hold all its pixels");
   EXPECT_TRUE(ExrChunks(path).read_tile(1, 1).empty());
   EXPECT_FALSE(ExrTileReader(path).read(0, 8, 0, 8, pixels));
