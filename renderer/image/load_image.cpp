@@ -262,7 +262,7 @@ void decode_pixels(const OpenImage& open, const std::string& file, Image& image)
 }
 
 // TIFF 6.0, tag PhotometricInterpretation.
-enum TiffColors { kWhiteIsZero = 0, kBlackIsZero = 1, kRgb = 2, kPalette = 3, kSeparated = 5 };
+enum TiffColors : int { kWhiteIsZero = 0, kBlackIsZero = 1, kRgb = 2, kPalette = 3, kSeparated = 5 };
 
 // OpenImageIO has libtiff make 8 bits of red, green and blue of other colours and of some JPEGs, which it does whatever
 // is missing or damaged.
