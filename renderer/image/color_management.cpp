@@ -174,22 +174,26 @@ void apply(const ocio::CPUProcessor& processor, std::vector<float>& rgb) {
   });
 }
 
-bool is_finite_color(const float* rgb) {
-  return std::isfinite(rgb[0]) && std::isfinite(rgb[1]) && std::isfinite(rgb[2]);
+// Neither a number that no light has nor one that curves and matrices might overflow with.
+bool is_common(const float* rgb) {
+  constexpr float kMost = 1e6F;
+  return std::abs(rgb[0]) <= kMost && std::abs(rgb[1]) <= kMost && std::abs(rgb[2]) <= kMost;
 }
 
 bool is_no_number(const float* rgb) { return std::isnan(rgb[0]) || std::isnan(rgb[1]) || std::isnan(rgb[2]); }
-bool is_not_finite(const float* rgb) { return !is_finite_color(rgb); }
+bool is_not_finite(const float* rgb) {
+  return !std::isfinite(rgb[0]) || !std::isfinite(rgb[1]) || !std::isfinite(rgb[2]);
+}
 
-// As apply(). Error where finite colours become what they may not.
+// As apply(). Error where common colours become what they may not.
 void apply_to_frame(const ocio::CPUProcessor& processor, const std::filesystem::path& path,
                     bool (*may_not)(const float*), std::vector<float>& rgb) {
-  std::vector<bool> finite(rgb.size() / 3);
-  for (std::size_t i = 0; i < finite.size(); ++i) finite[i] = is_finite_color(&rgb[3 * i]);
+  std::vector<bool> common(rgb.size() / 3);
+  for (std::size_t i = 0; i < common.size(); ++i) common[i] = is_common(&rgb[3 * i]);
   apply(processor, rgb);
-  for (std::size_t i = 0; i < finite.size(); ++i) {
-    if (!finite[i] || !may_not(&rgb[3 * i])) continue;
-    throw Error({path.string(), "", "makes colours that are not finite of finite ones", "a transform that works"});
+  for (std::size_t i = 0; i < common.size(); ++i) {
+    if (!common[i] || !may_not(&rgb[3 * i])) continue;
+    throw Error({path.string(), "", "makes colours that are not finite of common ones", "a transform that works"});
   }
 }
 
