@@ -174,7 +174,7 @@ void apply(const ocio::CPUProcessor& processor, std::vector<float>& rgb) {
   });
 }
 
-// Neither a number that no light has nor one that curves and matrices might overflow with.
+// Finite, and not so bright that curves and matrices might overflow.
 bool is_common(const float* rgb) {
   constexpr float kMost = 1e6F;
   return std::abs(rgb[0]) <= kMost && std::abs(rgb[1]) <= kMost && std::abs(rgb[2]) <= kMost;
