@@ -100,13 +100,14 @@ class Header {
   std::string file_;
 };
 
-// A grid's cells fill its region, which has a volume. False where anything is not finite.
+// A grid's cells fill its region, which may be flat, but no point. False where anything is not finite.
 bool fills_region(const LightGrid& grid) {
+  if (!(grid.region.diagonal() > 0)) return false;
   for (int a = 0; a < 3; ++a) {
     const float extent = grid.region.extent()[a], tolerance = 1e-3F * grid.spacing[a];
     const bool spaced = std::abs(grid.spacing[a] * float(grid.counts[a]) - extent) <= tolerance;
     const bool begun = std::abs(grid.region.min[a] + 0.5F * grid.spacing[a] - grid.origin[a]) <= 1e-3F * extent;
-    if (!spaced || !begun || !(grid.spacing[a] > 0)) return false;
+    if (!spaced || !begun) return false;
   }
   return true;
 }

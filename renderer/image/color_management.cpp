@@ -174,25 +174,25 @@ void apply(const ocio::CPUProcessor& processor, std::vector<float>& rgb) {
   });
 }
 
-// Finite, and not so bright that curves and matrices might overflow.
-bool is_common(const float* rgb) {
-  constexpr float kMost = 1e6F;
-  return std::abs(rgb[0]) <= kMost && std::abs(rgb[1]) <= kMost && std::abs(rgb[2]) <= kMost;
-}
-
 bool is_no_number(const float* rgb) { return std::isnan(rgb[0]) || std::isnan(rgb[1]) || std::isnan(rgb[2]); }
 bool is_not_finite(const float* rgb) {
   return !std::isfinite(rgb[0]) || !std::isfinite(rgb[1]) || !std::isfinite(rgb[2]);
 }
 
-// As apply(). Error where common colours become what they may not.
-void apply_to_frame(const ocio::CPUProcessor& processor, const std::filesystem::path& path,
+// Up to these no transform that is of use leaves what floats hold: from linear ones, and from logarithmic ones.
+constexpr float kCommonLight = 1e6F, kCommonCode = 1;
+
+// As apply(). Error where colours up to `common` become what they may not.
+void apply_to_frame(const ocio::CPUProcessor& processor, const std::filesystem::path& path, float common,
                     bool (*may_not)(const float*), std::vector<float>& rgb) {
-  std::vector<bool> common(rgb.size() / 3);
-  for (std::size_t i = 0; i < common.size(); ++i) common[i] = is_common(&rgb[3 * i]);
+  const auto is_common = [&](std::size_t i) {
+    return std::abs(rgb[i]) <= common && std::abs(rgb[i + 1]) <= common && std::abs(rgb[i + 2]) <= common;
+  };
+  std::vector<bool> checked(rgb.size() / 3);
+  for (std::size_t i = 0; i < checked.size(); ++i) checked[i] = is_common(3 * i);
   apply(processor, rgb);
-  for (std::size_t i = 0; i < common.size(); ++i) {
-    if (!common[i] || !may_not(&rgb[3 * i])) continue;
+  for (std::size_t i = 0; i < checked.size(); ++i) {
+    if (!checked[i] || !may_not(&rgb[3 * i])) continue;
     throw Error({path.string(), "", "makes colours that are not finite of common ones", "a transform that works"});
   }
 }
@@ -318,7 +318,7 @@ Image apply_display_view(const Image& image, const std::filesystem::path& config
   for (float& value : shown.pixels) {
     value = float(std::clamp(double(value) * gain, -double(kWhiteInAnyView), double(kWhiteInAnyView)));
   }
-  apply_to_frame(*processor, config, is_no_number, shown.pixels);
+  apply_to_frame(*processor, config, kCommonLight, is_no_number, shown.pixels);
   std::transform(shown.pixels.begin(), shown.pixels.end(), shown.pixels.begin(), display_value);
   return shown;
 }
@@ -326,7 +326,7 @@ Image apply_display_view(const Image& image, const std::filesystem::path& config
 Image to_rec709_from_display_view(const Image& image, const std::filesystem::path& config, const ViewOptions& options) {
   std::vector<float> rgb = rgb_of(image).pixels;
   const auto processor = inverse_view_processor(load_config(config), config, options);
-  apply_to_frame(*processor, config, is_not_finite, rgb);
+  apply_to_frame(*processor, config, kCommonCode, is_not_finite, rgb);
   const float gain = std::exp2(-options.exposure);
   for (float& value : rgb) value *= gain;
   Image linear = image;
@@ -341,7 +341,7 @@ void convert_from_rec709(Image& image, const std::filesystem::path& config, cons
   const auto processor = cpu_processor(loaded, space_transform(loaded, config, space), config);
   for (const Triple& triple : color_triples(image, color_layers)) {
     std::vector<float> rgb = gather(image, triple);
-    apply_to_frame(*processor, config, is_not_finite, rgb);
+    apply_to_frame(*processor, config, kCommonLight, is_not_finite, rgb);
     scatter(rgb, triple, image);
   }
 }
@@ -366,7 +366,7 @@ void convert_to_rec709(Image& image, const std::filesystem::path& config, const 
   const ocio::ConstConfigRcPtr loaded = load_config(config);
   check_space(loaded, space, config);
   const auto processor = cpu_processor(loaded, inverted(space_transform(loaded, config, space)), config);
-  apply_to_frame(*processor, config, is_not_finite, rgb);
+  apply_to_frame(*processor, config, kCommonCode, is_not_finite, rgb);
   scatter(rgb, {0, 1, 2}, image);
 }
 

@@ -10,7 +10,7 @@
 namespace chiaro::renderer {
 
 // So many of its first bytes say which format a picture has, and what there is to find_damage() but of a JPEG.
-constexpr std::size_t kFormatBytes = 1024;
+constexpr std::size_t kFormatBytes = 8192;
 
 // The format that a picture with these first bytes has, by OpenImageIO's name of it; empty: none that is read here.
 // Formats without a signature are told by the name's extension (".tga"), and so is what a file of another content was

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +18,7 @@ namespace {
 
 namespace ocio = OCIO_NAMESPACE;
 
-constexpr std::size_t kMostTransforms = 4096, kLongestChain = 64, kMostAliases = 16;
+constexpr std::size_t kMostTransforms = 4096, kLongestChain = 64, kMostRepetitions = 1000;
 constexpr const char* kExpected = "an OpenColorIO config";
 
 enum class Kind { kColorSpace, kNamedTransform, kLook, kViewTransform, kView };
@@ -37,14 +36,21 @@ std::string in_words(const Node& node) {
   return fmt::format("{} \"{}\"", kKinds[int(node.kind)], shortened(node.name, 40));
 }
 
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+  return begin == std::string::npos ? "" : text.substr(begin, end + 1 - begin);
+}
+
 // "+first, -second | third"
-std::vector<std::string> names_of_looks(std::string_view looks) {
-  std::vector<std::string> names(1);
-  for (const char c : looks) {
-    if (c == ',' || c == ':' || c == '|') names.emplace_back();
-    if (std::string_view(",:|+- ").find(c) == std::string_view::npos) names.back() += c;
+std::vector<std::string> names_of_looks(const std::string& looks) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= looks.size();) {
+    const std::size_t end = std::min(looks.find_first_of(",:|", begin), looks.size());
+    std::string name = trimmed(looks.substr(begin, end - begin));
+    if (name.starts_with('+') || name.starts_with('-')) name = trimmed(name.substr(1));
+    if (!name.empty()) names.push_back(std::move(name));
+    begin = end + 1;
   }
-  std::erase(names, "");
   return names;
 }
 
@@ -138,8 +144,20 @@ class References {
     const char *const display = node.display.c_str(), *const view = node.name.c_str();
     const std::string space = config_->getDisplayViewColorSpaceName(display, view);
     add_space(space == ocio::OCIO_VIEW_USE_DISPLAY_NAME ? node.display : space, content);
-    content.references.push_back({Kind::kViewTransform, config_->getDisplayViewTransformName(display, view)});
+    const std::string transform = config_->getDisplayViewTransformName(display, view);
+    if (!transform.empty()) content.references.push_back({Kind::kViewTransform, transform});
     add_looks(config_->getDisplayViewLooks(display, view), content);
+  }
+
+  // Between spaces of scenes and of displays stands the default view transform.
+  void add_conversion(const std::string& from, const std::string& to, Content& content) const {
+    add_space(from, content);
+    add_space(to, content);
+    const auto first = config_->getColorSpace(context_->resolveStringVar(from.c_str()));
+    const auto second = config_->getColorSpace(context_->resolveStringVar(to.c_str()));
+    const auto between = config_->getDefaultSceneToDisplayViewTransform();
+    if (!first || !second || !between || first->getReferenceSpaceType() == second->getReferenceSpaceType()) return;
+    content.references.push_back({Kind::kViewTransform, between->getName()});
   }
 
   // By its name, an alias or a role.
@@ -163,11 +181,9 @@ class References {
     if (const auto group = std::dynamic_pointer_cast<const ocio::GroupTransform>(transform)) {
       for (int i = 0; i < group->getNumTransforms(); ++i) add(group->getTransform(i), content);
     } else if (const auto spaces = std::dynamic_pointer_cast<const ocio::ColorSpaceTransform>(transform)) {
-      add_space(spaces->getSrc(), content);
-      add_space(spaces->getDst(), content);
+      add_conversion(spaces->getSrc(), spaces->getDst(), content);
     } else if (const auto looks = std::dynamic_pointer_cast<const ocio::LookTransform>(transform)) {
-      add_space(looks->getSrc(), content);
-      add_space(looks->getDst(), content);
+      add_conversion(looks->getSrc(), looks->getDst(), content);
       add_looks(looks->getLooks(), content);
     } else if (const auto view = std::dynamic_pointer_cast<const ocio::DisplayViewTransform>(transform)) {
       add_space(view->getSrc(), content);
@@ -186,7 +202,11 @@ class References {
       return;  // told where it is needed
     }
     std::error_code ignored;
-    if (!std::filesystem::exists(location, ignored) || std::filesystem::is_regular_file(location, ignored)) return;
+    const auto type = std::filesystem::status(location, ignored).type();
+    if (type == std::filesystem::file_type::not_found || type == std::filesystem::file_type::regular ||
+        type == std::filesystem::file_type::directory) {
+      return;
+    }
     throw Error({path_.string(), fmt::format("\"{}\"", shortened(name, 100)), "is not a file", "a file"});
   }
 
@@ -198,28 +218,28 @@ class References {
 
 bool ends_name(char c) { return std::string_view(" \t\r\n,]}:").find(c) != std::string_view::npos; }
 
-// The names behind a sign.
-std::vector<std::string> names_behind(char sign, const std::string& text) {
-  std::vector<std::string> names;
-  for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign, at + 1)) {
-    const auto end = std::find_if(text.begin() + std::ptrdiff_t(at) + 1, text.end(), ends_name);
-    if (end > text.begin() + std::ptrdiff_t(at) + 1) names.emplace_back(text.begin() + std::ptrdiff_t(at) + 1, end);
-  }
-  return names;
-}
-
-// YAML repeats what is behind an anchor wherever an alias of it stands, and what that repeats, and so on.
+// YAML repeats what is behind an anchor (&name) wherever an alias of it (*name) stands, and what that repeats, and so
+// on. What is behind an anchor is taken to reach to the next one.
 void refuse_repetition(const std::filesystem::path& path) {
   std::error_code no_file;
   if (!std::filesystem::is_regular_file(path, no_file)) return;
   const std::string text = read_file(path);
-  const std::vector<std::string> names = names_behind('&', text);
-  const std::set<std::string> anchors(names.begin(), names.end());
-  std::size_t aliases = 0;
-  for (const std::string& name : names_behind('*', text)) aliases += anchors.contains(name) ? 1 : 0;
-  if (aliases <= kMostAliases) return;
-  throw Error({path.string(), "", fmt::format("repeats parts of itself {} times", aliases),
-               fmt::format("at most {} aliases", kMostAliases)});
+  std::map<std::string, double> parts;  // behind each anchor
+  std::string last;
+  double repeated = 0;
+  for (std::size_t at = text.find_first_of("&*"); at != std::string::npos; at = text.find_first_of("&*", at + 1)) {
+    const auto end = std::find_if(text.begin() + std::ptrdiff_t(at) + 1, text.end(), ends_name);
+    const std::string name(text.begin() + std::ptrdiff_t(at) + 1, end);
+    if (text[at] == '&') {
+      parts[last = name] = 1;
+    } else if (const auto anchor = parts.find(name); anchor != parts.end()) {
+      repeated += anchor->second;
+      if (name != last) parts[last] += anchor->second;
+    }
+  }
+  if (repeated <= double(kMostRepetitions)) return;
+  throw Error({path.string(), "", "repeats parts of itself, and those repeat others, without measure",
+               fmt::format("at most {} repetitions", kMostRepetitions)});
 }
 
 }  // namespace

@@ -324,6 +324,7 @@ GltfJson check_gltf_json(const std::string& text, const std::filesystem::path& p
   result.images = take_images(root);
   result.meshopt_views = meshopt_views(root);
   result.structure = root.dump();
+  result.size = text.size();
   return result;
 }
 

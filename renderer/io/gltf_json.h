@@ -55,6 +55,7 @@ struct GltfJson {
   // All but what stands below. A primitive's indices stand among its attributes under the
   // name kIndicesAttribute, as tinygltf refuses index accessors without a buffer view, which are allowed.
   std::string structure;
+  std::size_t size = 0;  // of the text, in bytes
   std::vector<std::string> extensions_used, extensions_required;
   std::vector<GltfBufferSource> buffers;
   std::vector<GltfImageSource> images;

@@ -60,7 +60,9 @@ void add_target(const TargetContext& context, Mesh& mesh) {
 void add_morph_targets(const GltfDocument& document, const GltfPrimitiveRef& ref, const std::vector<float>& weights,
                        Mesh& mesh) {
   const auto& targets = document.model->meshes[std::size_t(ref.mesh)].primitives[std::size_t(ref.primitive)].targets;
-  if (!weights.empty() && weights.size() != targets.size()) {
+  const bool moves = std::any_of(weights.begin(), weights.end(), [](float weight) { return weight != 0; });
+  if (!moves || targets.empty()) return;
+  if (weights.size() != targets.size()) {
     fail(document, place_of(ref), fmt::format("has {} morph targets", targets.size()),
          fmt::format("{}, as there are weights", weights.size()));
   }

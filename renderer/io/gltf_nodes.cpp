@@ -44,7 +44,7 @@ Vec3f vec3_or(const std::vector<double>& values, Vec3f otherwise) {
 void check_transform(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model->nodes[index];
   const std::string place = node_place(index);
-  if (!node.matrix.empty()) check_affine(document, node.matrix, place + ".matrix");
+  if (!node.matrix.empty()) check_affine(document, node.matrix, 1e-5, place + ".matrix");
   if (node.rotation.empty() || std::isfinite(unit_quaternion(node.rotation).w)) return;
   fail(document, place + ".rotation", "is of no direction", "a unit quaternion");
 }
@@ -121,10 +121,10 @@ std::vector<double> instance_values(const std::vector<float>& values, std::size_
 
 std::string place_of(const PlacedNode& node) { return node_place(std::size_t(node.node)); }
 
-void check_affine(const GltfDocument& document, const std::vector<double>& matrix, const std::string& place) {
-  constexpr double kTolerance = 1e-5;
+void check_affine(const GltfDocument& document, const std::vector<double>& matrix, double tolerance,
+                  const std::string& place) {
   for (std::size_t i = 3; i < 16; i += 4) {
-    if (std::abs(matrix[i] - (i == 15 ? 1 : 0)) <= kTolerance) continue;
+    if (std::abs(matrix[i] - (i == 15 ? 1 : 0)) <= tolerance) continue;
     fail(document, place, fmt::format("element {} is {:.6g}", i, matrix[i]),
          "0, 0, 0 and 1 as elements 3, 7, 11 and 15: columns, one after the other");
   }

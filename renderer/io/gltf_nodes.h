@@ -32,7 +32,8 @@ std::string place_of(const PlacedNode& node);
 
 // Error, naming the place, where the fourth row of a matrix, which comes column after column, is that of a projection:
 // transposed ones have their translation there.
-void check_affine(const GltfDocument& document, const std::vector<double>& matrix, const std::string& place);
+void check_affine(const GltfDocument& document, const std::vector<double>& matrix, double tolerance,
+                  const std::string& place);
 
 // Error, naming the node, for a point of it that is beyond the world's limits. `what`: "a vertex", "a light", …
 void check_in_world(const GltfDocument& document, const PlacedNode& node, Vec3f point, const char* what);

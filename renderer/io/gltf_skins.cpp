@@ -14,6 +14,7 @@
 namespace chiaro::renderer {
 namespace {
 
+constexpr double kRoundingOfInverses = 1e-3;
 constexpr float kRoundingOfSums = 0.02F;  // of four weights of 8 bits, generously
 
 std::string attribute_place(const GltfPrimitiveRef& ref, const std::string& name) {
@@ -109,7 +110,8 @@ std::vector<Mat4f> world_from_bind(const GltfDocument& document, int skin, const
     transforms[j] = world_from_nodes[std::size_t(source.joints[j])];
     if (inverse_bind.empty()) continue;
     const auto matrix = inverse_bind.begin() + std::ptrdiff_t(16 * j);
-    check_affine(document, {matrix, matrix + 16}, fmt::format("{}.inverseBindMatrices[{}]", place, j));
+    check_affine(document, {matrix, matrix + 16}, kRoundingOfInverses,
+                 fmt::format("{}.inverseBindMatrices[{}]", place, j));
     Mat4f bind;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)

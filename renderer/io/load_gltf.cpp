@@ -51,7 +51,7 @@ bool is_point(const Mat4f& transform) {
 
 // Nodes may share the positions of their instances, so that a small file could ask for any number.
 std::size_t most_instances(const GltfDocument& document) {
-  std::size_t most = std::size_t{1} << 20;
+  std::size_t most = (std::size_t{1} << 20) + document.json.size;
   for (const std::string& buffer : document.buffers) most += buffer.size();
   return most;
 }

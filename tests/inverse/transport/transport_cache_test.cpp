@@ -306,18 +306,18 @@ TEST_F(TransportCacheFile, RegionsBeyondTheWorldAreRefused) {
   }
 }
 
-TEST_F(TransportCacheFile, RegionsWithoutAVolumeAreRefused) {
+TEST_F(TransportCacheFile, RegionsMayBeFlatButNoPoint) {
   TransportCache cache = make_cache(1);
-  for (const float size : {1.0F, 0.0F}) {
+  for (const Vec3f size : {Vec3f{1, 1, 1}, {1, 0, 1}, {1, 0, 0}, {0, 0, 0}}) {
     cache.grid = {};
-    cache.grid.region = {{1, 1, 1}, {2, 1 + size, 2}};
-    cache.grid.origin = {1.5F, 1 + 0.5F * size, 1.5F};
+    cache.grid.region = {{1, 1, 1}, Vec3f{1, 1, 1} + size};
+    cache.grid.origin = Vec3f{1, 1, 1} + 0.5F * size;
     cache.grid.counts = {1, 1, 1};
-    cache.grid.spacing = {1, size, 1};
+    cache.grid.spacing = size;
     cache.grid.light_of_node = {0};
     const renderer::Attributes attributes = transport_cache_attributes(cache);
     const std::string message = test::error_of([&] { transport_cache_from(attributes, 1, 1, "flat.exr"); });
-    EXPECT_EQ(message.empty(), size > 0) << message;
+    EXPECT_EQ(message.empty(), size.x > 0) << message;
   }
 }
 
