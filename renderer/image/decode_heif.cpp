@@ -97,6 +97,7 @@ class HeifReader {
     const Options options(heif_decoding_options_alloc());
     if (!options) throw std::bad_alloc();
     options->strict_decoding = 1;
+    options->decoder_id = "aom";  // of AVIF: dav1d takes 6 GB for what may say so in 300 bytes
     heif_image* image = nullptr;
     const heif_chroma chroma = kChroma[header.bytes_per_sample - 1][header.channels - 3];
     check(heif_decode_image(handle_.get(), &image, heif_colorspace_RGB, chroma, options.get()), file_);

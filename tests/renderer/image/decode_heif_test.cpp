@@ -1,5 +1,7 @@
 // Against pictures of other encoders, and what is wrong with their headers.
 
+#include <sys/resource.h>
+
 #include <gtest/gtest.h>
 
 #include "renderer/image/decode_heif.h"
@@ -64,6 +66,26 @@ TEST(DecodeHeif, AHeaderOfAnotherSizeIsRefused) {
                 std::string::npos);
     }
   }
+}
+
+// The one of 12 bits, whose coded frame says that it has 32768 x 32768 pixels.
+constexpr std::string_view kHugeFrame =
+    "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOptZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRt"
+    "AAAAAAABAAAAImlsb2MAAAAAREAAAQABAAAAAAEOAAEAAAAAAAAAHAAAACNpaW5mAAAAAAABAAAAFWluZmUCAAAAAAEAAGF2MDEAAAAAamlw"
+    "cnAAAABLaXBjbwAAABNjb2xybmNseAACAAIABoAAAAAMYXYxQ4FAbAAAAAAUaXNwZQAAAAAAAAACAAAAAgAAABBwaXhpAAAAAAMMDAwAAAAX"
+    "aXBtYQAAAAAAAAABAAEEgYIDhAAAACRtZGF0EgAKDFg/3//f/9jQICBuEDIKEAAAAAfIJAQi6A==";
+
+long kilobytes_at_most() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST(DecodeHeif, AHugeFrameIsRefusedBeforeMemoryIsTakenForIt) {
+  const long before = kilobytes_at_most();
+  EXPECT_NE(error_of([] { decode_texture(from_base64(kHugeFrame), "t"); }).find("cannot be decoded"),
+            std::string::npos);
+  EXPECT_LT(kilobytes_at_most() - before, 500'000);
 }
 
 TEST(DecodeHeif, TwelveBitsAreKept) {
