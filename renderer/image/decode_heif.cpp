@@ -46,10 +46,22 @@ const char* curve_of(const heif_image_handle* handle) {
   return uncommon_curve(int(profile->transfer_characteristics));
 }
 
+// ISO/IEC 14496-12, ItemInfoEntry: whether an item is of that type. Its number before has two bytes or four.
+bool has_item(std::string_view encoded, std::string_view type) {
+  constexpr std::string_view kEntry = "infe";
+  for (std::size_t at = encoded.find(kEntry); at != std::string_view::npos; at = encoded.find(kEntry, at + 1)) {
+    for (const std::size_t offset : {12, 14}) {
+      if (at + offset < encoded.size() && encoded.substr(at + offset).starts_with(type)) return true;
+    }
+  }
+  return false;
+}
+
 class HeifReader {
  public:
   HeifReader(std::string_view encoded, const std::string& file) : file_(file), context_(heif_context_alloc()) {
     if (!context_) throw std::bad_alloc();
+    require_one_piece(encoded);
     check(heif_context_read_from_memory_without_copy(context_.get(), encoded.data(), encoded.size(), nullptr), file);
     heif_image_handle* handle = nullptr;
     check(heif_context_get_primary_image_handle(context_.get(), &handle), file);
@@ -82,6 +94,14 @@ class HeifReader {
   }
 
  private:
+  // libheif overruns its memory where pieces and the whole have other sizes than they say.
+  void require_one_piece(std::string_view encoded) const {
+    for (const char* const derived : {"grid", "iovl", "iden"}) {
+      if (!has_item(encoded, derived)) continue;
+      throw Error({file_, "", "is put together of pieces", "an AVIF or HEIC of one piece"});
+    }
+  }
+
   static int width_of(const Decoded& image) { return heif_image_get_width(image.get(), heif_channel_interleaved); }
   static int height_of(const Decoded& image) { return heif_image_get_height(image.get(), heif_channel_interleaved); }
 

@@ -88,6 +88,15 @@ TEST(DecodeHeif, AHugeFrameIsRefusedBeforeMemoryIsTakenForIt) {
   EXPECT_LT(kilobytes_at_most() - before, 500'000);
 }
 
+// The entry of its only picture says so.
+TEST(DecodeHeif, PicturesOfPiecesAreRefused) {
+  for (const std::string type : {"grid", "iovl", "iden"}) {
+    std::string bytes = from_base64(kAvif);
+    bytes.replace(bytes.find("av01"), 4, type);
+    EXPECT_NE(error_of([&] { decode_texture(bytes, "t"); }).find("is put together of pieces"), std::string::npos);
+  }
+}
+
 TEST(DecodeHeif, TwelveBitsAreKept) {
   const test::TemporaryFolder folder;
   const ImageFile file = load_image(folder.write("t.avif", from_base64(kWideAvif)));
