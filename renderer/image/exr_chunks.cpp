@@ -1,9 +1,8 @@
 #include "renderer/image/exr_chunks.h"
 
-#include <algorithm>
 #include <atomic>
+#include <functional>
 
-#include <fmt/format.h>
 #include <openexr.h>
 
 #include "renderer/core/control.h"
