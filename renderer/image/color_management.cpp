@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
@@ -179,8 +180,9 @@ bool is_not_finite(const float* rgb) {
   return !std::isfinite(rgb[0]) || !std::isfinite(rgb[1]) || !std::isfinite(rgb[2]);
 }
 
-// Up to these no transform that is of use leaves what floats hold: from linear ones, and from logarithmic ones.
-constexpr float kCommonLight = 1e6F, kCommonCode = 1;
+// Up to these no transform that is of use leaves what floats hold: from linear ones, from logarithmic ones, and of
+// those from linear to linear.
+constexpr float kCommonLight = 1e6F, kCommonCode = 1, kAny = std::numeric_limits<float>::max();
 
 // As apply(). Error where colours up to `common` become what they may not.
 void apply_to_frame(const ocio::CPUProcessor& processor, const std::filesystem::path& path, float common,
@@ -193,7 +195,7 @@ void apply_to_frame(const ocio::CPUProcessor& processor, const std::filesystem::
   apply(processor, rgb);
   for (std::size_t i = 0; i < checked.size(); ++i) {
     if (!checked[i] || !may_not(&rgb[3 * i])) continue;
-    throw Error({path.string(), "", "makes colours that are not finite of common ones", "a transform that works"});
+    throw Error({path.string(), "", "makes colours that are not finite of those that are", "a transform that works"});
   }
 }
 
@@ -341,7 +343,7 @@ void convert_from_rec709(Image& image, const std::filesystem::path& config, cons
   const auto processor = cpu_processor(loaded, space_transform(loaded, config, space), config);
   for (const Triple& triple : color_triples(image, color_layers)) {
     std::vector<float> rgb = gather(image, triple);
-    apply_to_frame(*processor, config, kCommonLight, is_not_finite, rgb);
+    apply_to_frame(*processor, config, kAny, is_not_finite, rgb);
     scatter(rgb, triple, image);
   }
 }

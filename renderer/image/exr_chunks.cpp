@@ -63,8 +63,11 @@ bool all_of(std::size_t count, const std::function<bool(std::size_t)>& holds) {
   return all;
 }
 
+// A file says in eight bytes where each chunk begins.
+bool have_places(std::uintmax_t file_size, std::size_t chunks) { return chunks <= file_size / sizeof(std::uint64_t); }
+
 // Of the finest level.
-bool are_whole_tiles(exr_const_context_t file, int part, const exr_attr_box2i_t& window) {
+bool are_whole_tiles(exr_const_context_t file, std::uintmax_t file_size, int part, const exr_attr_box2i_t& window) {
   std::uint32_t width = 0, height = 0;
   exr_tile_level_mode_t levels;
   exr_tile_round_mode_t rounding;
@@ -74,25 +77,29 @@ bool are_whole_tiles(exr_const_context_t file, int part, const exr_attr_box2i_t&
     return std::size_t((last - first) / tile + 1);
   };
   const std::size_t across = count(window.min.x, window.max.x, width), down = count(window.min.y, window.max.y, height);
-  return all_of(across * down,
-                [&](std::size_t i) { return is_whole_tile(file, part, int(i % across), int(i / across)); });
+  const auto is_whole_at = [&](std::size_t i) { return is_whole_tile(file, part, int(i % across), int(i / across)); };
+  return have_places(file_size, across * down) && all_of(across * down, is_whole_at);
 }
 
-bool are_whole_lines(exr_const_context_t file, int part, const exr_attr_box2i_t& window) {
+bool are_whole_lines(exr_const_context_t file, std::uintmax_t file_size, int part, const exr_attr_box2i_t& window) {
   std::int32_t at_once = 0;
   if (exr_get_scanlines_per_chunk(file, part, &at_once) != EXR_ERR_SUCCESS || at_once < 1) return true;
   const std::int64_t first = window.min.y;
-  return all_of(std::size_t((window.max.y - first) / at_once + 1), [&](std::size_t i) {
+  const auto count = std::size_t((window.max.y - first) / at_once + 1);
+  const auto is_whole_at = [&](std::size_t i) {
     exr_chunk_info_t chunk;
     const int y = int(first + std::int64_t(i) * at_once);
     return exr_read_scanline_chunk_info(file, part, y, &chunk) == EXR_ERR_SUCCESS && is_whole(file, part, chunk);
-  });
+  };
+  return have_places(file_size, count) && all_of(count, is_whole_at);
 }
 
 }  // namespace
 
 struct ExrChunks::Context {
   explicit Context(const std::filesystem::path& path) {
+    std::error_code no_size;
+    bytes = std::filesystem::file_size(path, no_size);
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
     settings.error_handler_fn = say_nothing;
     if (exr_start_read(&file, path.c_str(), &settings) != EXR_ERR_SUCCESS) file = nullptr;
@@ -104,6 +111,7 @@ struct ExrChunks::Context {
   Context& operator=(const Context&) = delete;
 
   exr_context_t file = nullptr;
+  std::uintmax_t bytes = 0;
 };
 
 ExrChunks::ExrChunks(const std::filesystem::path& path) : context_(std::make_unique<Context>(path)) {}
@@ -125,8 +133,8 @@ std::optional<std::string> ExrChunks::find_damage(int part) const {
     return std::nullopt;
   }
   const bool tiled = storage == EXR_STORAGE_TILED, lines = storage == EXR_STORAGE_SCANLINE;
-  if (tiled && !are_whole_tiles(file, part, window)) return "a tile does not hold all its pixels";
-  if (lines && !are_whole_lines(file, part, window)) return "lines do not hold all their pixels";
+  if (tiled && !are_whole_tiles(file, context_->bytes, part, window)) return "a tile does not hold all its pixels";
+  if (lines && !are_whole_lines(file, context_->bytes, part, window)) return "lines do not hold all their pixels";
   return std::nullopt;
 }
 

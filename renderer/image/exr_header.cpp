@@ -16,6 +16,9 @@ constexpr std::uint32_t kMagic = 20000630, kTiled = 1U << 9, kMultipart = 1U << 
 // Libraries take memory for a tile, or for as many lines as are compressed together.
 constexpr std::uint64_t kMostPixelsOfTile = 1U << 24, kMostPixelsOfLine = 1U << 20, kMostPixelsOfLines = 1U << 26;
 
+// An attribute, and its type: of another readers would pass it, and take the colours for Rec.709's.
+constexpr const char* kChromaticities = "chromaticities";
+
 // 0 where the stream ends, which it then says.
 std::uint32_t read_number(std::istream& stream) {
   std::array<unsigned char, 4> bytes{};
@@ -36,11 +39,10 @@ std::optional<std::string> read_name(std::istream& stream) {
 // Bytes of values that readers take at their own length, whatever the header says it is.
 std::optional<std::uint32_t> fixed_size(const std::string& type) {
   constexpr std::pair<std::string_view, std::uint32_t> kSizes[] = {
-      {"int", 4},       {"float", 4},    {"double", 8},         {"v2i", 8},      {"v2f", 8},
-      {"v2d", 16},      {"v3i", 12},     {"v3f", 12},           {"v3d", 24},     {"box2i", 16},
-      {"box2f", 16},    {"m33f", 36},    {"m33d", 72},          {"m44f", 64},    {"m44d", 128},
-      {"rational", 8},  {"timecode", 8}, {"keycode", 28},       {"tiledesc", 9}, {"compression", 1},
-      {"lineOrder", 1}, {"envmap", 1},   {"chromaticities", 32}};
+      {"int", 4},      {"float", 4},       {"double", 8},    {"v2i", 8},      {"v2f", 8},           {"v2d", 16},
+      {"v3i", 12},     {"v3f", 12},        {"v3d", 24},      {"box2i", 16},   {"box2f", 16},        {"m33f", 36},
+      {"m33d", 72},    {"m44f", 64},       {"m44d", 128},    {"rational", 8}, {"timecode", 8},      {"keycode", 28},
+      {"tiledesc", 9}, {"compression", 1}, {"lineOrder", 1}, {"envmap", 1},   {kChromaticities, 32}};
   for (const auto& [name, size] : kSizes) {
     if (type == name) return size;
   }
@@ -126,6 +128,8 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<b
       damage = "its header is cut short";
     } else if (size > file_size - std::uintmax_t(stream.tellg()) || !has_its_size(stream, *type, size)) {
       damage = fmt::format("its header is corrupt: attribute \"{}\" of {} bytes", name->substr(0, 40), size);
+    } else if (*name == kChromaticities && *type != kChromaticities) {
+      damage = fmt::format("its header is corrupt: {} of type \"{}\"", kChromaticities, type->substr(0, 40));
     }
     if (damage) return any;
     read_value(stream, *name, size, header);

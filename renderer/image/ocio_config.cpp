@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,21 @@ std::vector<std::string> names_of_looks(const std::string& looks) {
     if (name.starts_with('+') || name.starts_with('-')) name = trimmed(name.substr(1));
     if (!name.empty()) names.push_back(std::move(name));
     begin = end + 1;
+  }
+  return names;
+}
+
+// Of the files that a table in the Color Transform Format refers to: <Reference path="…"/>.
+std::vector<std::string> names_of_references(const std::filesystem::path& table) {
+  constexpr std::string_view kReference = "<Reference", kPath = "path=";
+  const std::string text = read_file(table);
+  std::vector<std::string> names;
+  for (std::size_t at = text.find(kReference); at != std::string::npos; at = text.find(kReference, at + 1)) {
+    const std::string element = text.substr(at, text.find('>', at) - at);
+    const std::size_t quote = element.find(kPath);
+    if (quote == std::string::npos) continue;
+    const std::string value = element.substr(quote + kPath.size());  // with its quotes
+    if (!value.empty()) names.push_back(value.substr(1, value.find(value[0], 1) - 1));
   }
   return names;
 }
@@ -110,7 +126,7 @@ class References {
     return found->second = size;
   }
 
-  Content content_of(const Node& node) const {
+  Content content_of(const Node& node) {
     Content content;
     const char* const name = node.name.c_str();
     if (node.kind == Kind::kColorSpace) {
@@ -151,23 +167,22 @@ class References {
 
   // Between spaces of scenes and of displays stands the default view transform.
   void add_conversion(const std::string& from, const std::string& to, Content& content) const {
-    add_space(from, content);
-    add_space(to, content);
-    const auto first = config_->getColorSpace(context_->resolveStringVar(from.c_str()));
-    const auto second = config_->getColorSpace(context_->resolveStringVar(to.c_str()));
+    const auto first = add_space(from, content), second = add_space(to, content);
     const auto between = config_->getDefaultSceneToDisplayViewTransform();
     if (!first || !second || !between || first->getReferenceSpaceType() == second->getReferenceSpaceType()) return;
     content.references.push_back({Kind::kViewTransform, between->getName()});
   }
 
-  // By its name, an alias or a role.
-  void add_space(const std::string& name, Content& content) const {
+  // By its name, an alias or a role: the space, unless it is a named transform.
+  ocio::ConstColorSpaceRcPtr add_space(const std::string& name, Content& content) const {
     const char* const resolved = context_->resolveStringVar(name.c_str());
-    if (const auto space = config_->getColorSpace(resolved)) {
+    const auto space = config_->getColorSpace(resolved);
+    if (space) {
       content.references.push_back({Kind::kColorSpace, space->getName()});
     } else if (const auto transform = config_->getNamedTransform(resolved)) {
       content.references.push_back({Kind::kNamedTransform, transform->getName()});
     }
+    return space;
   }
 
   void add_looks(const std::string& looks, Content& content) const {
@@ -176,7 +191,7 @@ class References {
     }
   }
 
-  void add(const ocio::ConstTransformRcPtr& transform, Content& content) const {
+  void add(const ocio::ConstTransformRcPtr& transform, Content& content) {
     ++content.transforms;
     if (const auto group = std::dynamic_pointer_cast<const ocio::GroupTransform>(transform)) {
       for (int i = 0; i < group->getNumTransforms(); ++i) add(group->getTransform(i), content);
@@ -194,7 +209,8 @@ class References {
   }
 
   // Reading of pipes and devices does not end.
-  void check_file(const std::string& name) const {
+  void check_file(const std::string& name) {
+    if (!files_.insert(name).second) return;
     std::string location;
     try {
       location = context_->resolveFileLocation(name.c_str());
@@ -203,17 +219,18 @@ class References {
     }
     std::error_code ignored;
     const auto type = std::filesystem::status(location, ignored).type();
-    if (type == std::filesystem::file_type::not_found || type == std::filesystem::file_type::regular ||
-        type == std::filesystem::file_type::directory) {
-      return;
+    if (type == std::filesystem::file_type::regular) {
+      for (const std::string& reference : names_of_references(location)) check_file(reference);
+    } else if (type != std::filesystem::file_type::not_found && type != std::filesystem::file_type::directory) {
+      throw Error({path_.string(), fmt::format("\"{}\"", shortened(name, 100)), "is not a file", "a file"});
     }
-    throw Error({path_.string(), fmt::format("\"{}\"", shortened(name, 100)), "is not a file", "a file"});
   }
 
   ocio::ConstConfigRcPtr config_;
   ocio::ConstContextRcPtr context_;
   const std::filesystem::path& path_;
   std::map<Node, Size> sizes_;
+  std::set<std::string> files_{};  // their names, looked at
 };
 
 bool ends_name(char c) { return std::string_view(" \t\r\n,]}:").find(c) != std::string_view::npos; }

@@ -27,13 +27,16 @@ const std::array<float, 8>* chromaticities_attribute(const Attributes& attribute
   return nullptr;
 }
 
+// Of a matrix between colours: a hundred times what primaries in use need.
+constexpr double kLargestEntry = 1e3;
+
 Rec709FromSpace rec709_from_file(const ImageFile& image, const std::string& file) {
   const std::array<float, 8>* chromaticities = chromaticities_attribute(image.attributes);
   if (chromaticities == nullptr) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const Rec709FromSpace matrix = rec709_from_chromaticities(*chromaticities);
   for (const auto& row : matrix) {
     for (const double entry : row) {
-      if (!std::isfinite(entry))
+      if (!(std::abs(entry) <= kLargestEntry))
         throw Error({file, "chromaticities", "span no colours", "three primaries and a white"});
     }
   }

@@ -197,8 +197,7 @@ TEST(ColorManagement, ConfigsThatReferToThemselvesAreRefused) {
             std::string::npos);
   for (const std::string name : {"my look", "a-b"}) {
     const std::string look = "looks:\n  - !<Look> {name: " + name + ", process_space: out, transform: " + gamma + "}\n";
-    const std::string uses =
-        "!<LookTransform> {src: lin_rec709, dst: lin_rec709, looks: \"+ " + name + "\"}";
+    const std::string uses = "!<LookTransform> {src: lin_rec709, dst: lin_rec709, looks: \"+ " + name + "\"}";
     EXPECT_NE(error_of_view(look + config_of(uses)).find("refers to itself"), std::string::npos) << name;
   }
   const std::string through_default_view =
@@ -239,6 +238,24 @@ TEST(ColorManagement, ConfigsThatRepeatThemselvesWithoutMeasureAreRefused) {
 TEST(ColorManagement, TablesInPipesAndDevicesAreRefused) {
   EXPECT_NE(error_of_view("search_path: .\n" + config_of("!<FileTransform> {src: /dev/zero}"))
                 .find("\"/dev/zero\": is not a file"),
+            std::string::npos);
+  const TemporaryFolder folder;
+  folder.write("outer.ctf", R"(<ProcessList id="a"><Reference inBitDepth="32f" path='inner.ctf'/></ProcessList>)");
+  folder.write("inner.ctf", R"(<ProcessList id="b"><Reference path="outer.ctf"/><Reference path="/dev/zero"/>)");
+  const std::string outer = "!<FileTransform> {src: " + (folder / "outer.ctf").string() + "}";
+  EXPECT_NE(error_of_view("search_path: " + (folder / "").string() + "\n" + config_of(outer))
+                .find("\"/dev/zero\": is not a file"),
+            std::string::npos);
+}
+
+TEST(ColorManagement, NothingThatIsNotFiniteIsMadeOfWhatIs) {
+  const TemporaryFolder folder;
+  const std::string thousandfold =
+      "!<MatrixTransform> {matrix: [1e3, 0, 0, 0, 0, 1e3, 0, 0, 0, 0, 1e3, 0, 0, 0, 0, 1]}";
+  const auto config = folder.write("config.ocio", config_of(thousandfold));
+  Image bright = one_pixel({"R", "G", "B"}, {1e30F, 1, 0}), brightest = one_pixel({"R", "G", "B"}, {1e36F, 1, 0});
+  EXPECT_NO_THROW(convert_from_rec709(bright, config, "out", {}));
+  EXPECT_NE(test::error_of([&] { convert_from_rec709(brightest, config, "out", {}); }).find("not finite"),
             std::string::npos);
 }
 

@@ -76,6 +76,27 @@ TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
   EXPECT_NE(test::error_of([&] { load_image(path); }).find("t.exr: pixels: a tile does not hold"), std::string::npos);
 }
 
+// 2²⁵ of them in 500 bytes.
+TEST(ExrChunks, MoreTilesThanAFileHasRoomForAreMissing) {
+  const test::TemporaryFolder folder;
+  const ExrTiles shape{.width = 4,
+                       .height = 4,
+                       .first_column = 0,
+                       .last_column = 4,
+                       .tile_width = 4,
+                       .tile_height = 4,
+                       .channels = {"a"}};
+  ExrTileWriter writer(folder / "t.exr", shape, {});
+  writer.write(0, 0, 4, std::vector<float>(16, 0.5F));
+  writer.close();
+  std::string bytes = read_file(folder / "t.exr");
+  const std::string window = std::string("dataWindow\0box2i\0", 17) + numbers({16});
+  const std::size_t corner = bytes.find(window) + window.size() + 8;
+  ASSERT_LT(corner, bytes.size());
+  bytes.replace(corner, 8, numbers({(1U << 27) - 1, 3}));
+  EXPECT_EQ(ExrChunks(folder.write("t.exr", bytes)).find_damage(0), "a tile does not hold all its pixels");
+}
+
 TEST(ExrChunks, WhatIsNotThereIsNotItsConcern) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(ExrChunks(folder / "not there.exr").find_damage(0), std::nullopt);

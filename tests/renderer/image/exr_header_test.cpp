@@ -109,6 +109,15 @@ TEST(ExrHeader, ValuesOfAnotherSizeThanTheirTypeAreRefused) {
   EXPECT_TRUE(damage("chlist", channel).has_value());
 }
 
+TEST(ExrHeader, PrimariesOfAnotherTypeAreRefused) {
+  const auto damage = [](const std::string& type, std::uint32_t size) {
+    return damage_of(
+        header(2, std::string("chromaticities") + '\0' + type + '\0' + number(size) + std::string(size, 'f') + '\0'));
+  };
+  EXPECT_EQ(damage("chromaticities", 32), std::nullopt);
+  EXPECT_EQ(damage("v2f", 8), "its header is corrupt: chromaticities of type \"v2f\"");
+}
+
 TEST(ExrHeader, AHeaderThatEndsEarlyIsCutShort) {
   const std::string whole = header(2, attribute("note", 2, "ab")) + '\0';
   for (std::size_t length = 8; length < whole.size(); ++length) {

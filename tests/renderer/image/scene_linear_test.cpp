@@ -38,6 +38,17 @@ TEST(SceneLinear, OtherPrimariesAreKnownAndConverted) {
   EXPECT_NEAR(found.z, -0.1006F, 1e-3F);
 }
 
+TEST(SceneLinear, PrimariesThatSpanNextToNoColorsAreRefused) {
+  const Image green{1, 1, {"R", "G", "B"}, {0, 1, 0}};
+  for (const float apart : {0.0F, 1e-6F}) {
+    const std::array<float, 8> flat{0.64F, 0.33F, 0.64F + apart, 0.33F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+    EXPECT_EQ(test::error_of([&] {
+                has_other_primaries(file_of(green, {{"chromaticities", flat}}), "x.exr");
+              }),
+              "x.exr: chromaticities: span no colours (expected three primaries and a white)");
+  }
+}
+
 const std::string kConfig = CHIARO_SOURCE_DIR "/scenes/color/config.ocio";
 
 // The white of D65 (IEC 61966-2-1) is that of Rec.709.
