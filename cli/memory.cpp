@@ -6,16 +6,24 @@
 #include <string>
 
 #include <sys/resource.h>
+#include <sys/sysinfo.h>
 #include <unistd.h>
 
 namespace chiaro::cli {
 namespace {
 
 // Of this process, now.
-double resident_bytes() {
-  double all = 0, resident = 0;  // pages
-  std::ifstream("/proc/self/statm") >> all >> resident;
-  return resident * double(::sysconf(_SC_PAGESIZE));
+struct MappedBytes {
+  double resident = 0;
+  double writable = 0;  // and nobody else's: what RLIMIT_DATA is about
+};
+
+// Source: Linux, proc(5).
+MappedBytes mapped_bytes() {
+  double all = 0, resident = 0, shared = 0, code = 0, libraries = 0, data = 0;  // pages
+  std::ifstream("/proc/self/statm") >> all >> resident >> shared >> code >> libraries >> data;
+  const double page = double(::sysconf(_SC_PAGESIZE));
+  return {resident * page, data * page};
 }
 
 // Infinity where there is none, or "max".
@@ -62,7 +70,20 @@ double memory_bytes() {
 
 double memory_left(std::optional<double> limit) {
   constexpr double kBesides = 100e6;  // threads, file buffers, and what the allocator does not give back
-  return limit.value_or(0.75 * memory_bytes()) - resident_bytes() - kBesides;
+  return limit.value_or(0.75 * memory_bytes()) - mapped_bytes().resident - kBesides;
+}
+
+void limit_memory(double bytes) {
+  rlimit limit = {};
+  if (mapped_bytes().writable > bytes || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  if (limit.rlim_cur != RLIM_INFINITY && double(limit.rlim_cur) <= bytes) return;
+  limit.rlim_cur = rlim_t(bytes);
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+double swap_bytes() {
+  struct sysinfo info = {};
+  return ::sysinfo(&info) == 0 ? double(info.totalswap) * double(info.mem_unit) : 0;
 }
 
 }  // namespace chiaro::cli

@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/exhaustion.h"
+#include "cli/memory.h"
 #include "cli/text_output.h"
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
@@ -114,6 +115,7 @@ int parse_and_run(CLI::App& program, const AddedCommands& commands, int argc, co
 
 int run_program(int argc, const char* const* argv) {
   try {
+    limit_memory(memory_bytes() + swap_bytes());
     CLI::App program("chiaro finds the lights that make a 3D scene look the way somebody painted it.", "chiaro");
     program.require_subcommand(1);
     program.set_version_flag("--version", "chiaro " + program_version());

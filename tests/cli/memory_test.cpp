@@ -2,7 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <limits>
+#include <new>
+#include <vector>
+
+#include <unistd.h>
 
 #include "tests/support/temporary_folder.h"
 
@@ -32,6 +38,25 @@ TEST(ControlGroupLimit, IsThatOfTheMemoryControllerInVersion1) {
 TEST(MemoryBytes, AreThoseOfThisMachineAtMost) {
   EXPECT_GT(memory_bytes(), 1e6);
   EXPECT_LT(memory_bytes(), 1e15);
+}
+
+// In a process of its own.
+TEST(LimitMemory, MoreCannotBeAllocated) {
+  constexpr double kAllowed = 2e9;
+  double pages = 0;
+  std::ifstream statm("/proc/self/statm");
+  for (int field = 0; field < 6; ++field) statm >> pages;
+  if (pages * double(::sysconf(_SC_PAGESIZE)) > kAllowed) GTEST_SKIP() << "sanitizers have mapped more than that";
+  const auto allocate = [] {
+    limit_memory(kAllowed);
+    try {
+      const std::vector<char> much(2 * std::size_t(kAllowed));
+      std::_Exit(much.empty() ? 1 : 2);
+    } catch (const std::bad_alloc&) {
+      std::_Exit(0);
+    }
+  };
+  EXPECT_EXIT(allocate(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
