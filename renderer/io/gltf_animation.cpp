@@ -1,6 +1,7 @@
 #include "renderer/io/gltf_animation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -31,17 +32,24 @@ using Values = std::vector<float>;
 
 Values copy_of(const float* first, std::size_t count) { return {first, first + count}; }
 
+using Quaternion = std::array<double, kQuaternion>;
+
+Quaternion unit(const float* q) {
+  const double length = std::hypot(std::hypot(double(q[0]), double(q[1])), std::hypot(double(q[2]), double(q[3])));
+  return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
+}
+
 // Ken Shoemake, Animating rotation with quaternion curves, 1985; along the shorter arc.
-Values slerp(const float* a, const float* b, double t) {
+Values slerp(const Quaternion& a, const Quaternion& b, double t) {
   double cosine = 0;
-  for (int i = 0; i < kQuaternion; ++i) cosine += double(a[i]) * b[i];
+  for (std::size_t i = 0; i < kQuaternion; ++i) cosine += a[i] * b[i];
   const double sign = cosine < 0 ? -1 : 1;
   const double angle = std::acos(std::min(std::abs(cosine), 1.0)), sine = std::sin(angle);
   const bool straight = sine < 1e-6;
   const double from = straight ? 1 - t : std::sin((1 - t) * angle) / sine;
   const double to = sign * (straight ? t : std::sin(t * angle) / sine);
   Values result(kQuaternion);
-  for (int i = 0; i < kQuaternion; ++i) result[std::size_t(i)] = float(from * a[i] + to * b[i]);
+  for (std::size_t i = 0; i < kQuaternion; ++i) result[i] = float(from * a[i] + to * b[i]);
   return result;
 }
 
@@ -70,7 +78,7 @@ Values sample(const Keys& keys, double seconds, bool rotation) {
   if (later == times.end() || keys.step) return copy_of(keys.value(key), keys.width);
   const double t = (seconds - times[key]) / (double(times[key + 1]) - times[key]);
   if (keys.cubic) return cubic(keys, key, t);
-  return rotation ? slerp(keys.value(key), keys.value(key + 1), t)
+  return rotation ? slerp(unit(keys.value(key)), unit(keys.value(key + 1)), t)
                   : linear(keys.value(key), keys.value(key + 1), keys.width, t);
 }
 
@@ -128,6 +136,7 @@ class AnimationReader {
     const std::size_t keyed = keys.times.size() * (keys.cubic ? 3 : 1);
     keys.width = width_of(channel, keyed, keys.values.size());
     check(keys, keyed, place);
+    if (channel.path == "rotation") check_rotations(keys, place);
     return keys;
   }
 
@@ -143,6 +152,14 @@ class AnimationReader {
     }
     if (std::adjacent_find(keys.times.begin(), keys.times.end(), std::greater<>()) != keys.times.end()) {
       fail(document_, place + ".input", "its times run back", "each no earlier than the one before");
+    }
+  }
+
+  void check_rotations(const Keys& keys, const std::string& place) const {
+    for (std::size_t key = 0; key < keys.times.size(); ++key) {
+      const float* const q = keys.value(key);
+      if (std::any_of(q, q + kQuaternion, [](float v) { return v != 0; })) continue;
+      fail(document_, place + ".output", fmt::format("its rotation {} is of no direction", key), "unit quaternions");
     }
   }
 

@@ -97,9 +97,10 @@ TEST(Animation, StepsHoldUntilTheNextKey) {
 
 TEST(Animation, RotationsTakeTheShorterArcAtConstantSpeed) {
   const float h = std::sqrt(0.5F);
-  for (const float sign : {1.0F, -1.0F}) {  // q and -q are one rotation
+  for (const float scale :
+       {1.0F, -1.0F, 0.5F, -2.0F}) {  // q and −q are one rotation, and so are others of its direction
     GltfBuilder gltf = triangle_scene();
-    add_animation(gltf, {{{0, 1}, {0, 0, 0, 1, 0, 0, sign * h, sign * h}, "rotation"}});
+    add_animation(gltf, {{{0, 1}, {0, 0, 0, 1, 0, 0, scale * h, scale * h}, "rotation"}});
     const float angle = kPi / 2 / 3;
     expect_near(transform_direction(placed(gltf, 1.0 / 3), {1, 0, 0}), {std::cos(angle), std::sin(angle), 0});
   }
@@ -195,6 +196,7 @@ const BadAnimation kBadAnimations[] = {
     {"NoKeys", {{}, {}, "translation"}, "has 0 values"},
     {"CubicWithoutTangents", {{0, 1}, {0, 0, 0, 1, 1, 1}, "translation", "CUBICSPLINE"}, "as many as 2 keys need"},
     {"TimesRunBack", {{1, 0}, {0, 0, 0, 1, 1, 1}, "translation"}, "run back"},
+    {"RotationOfNoDirection", {{0, 1}, {0, 0, 0, 1, 0, 0, 0, 0}, "rotation"}, "rotation 1 is of no direction"},
     {"NotANumber", {{0, 1}, {0, 0, 0, NAN, 1, 1}, "translation"}, "not finite"},
     {"UnknownInterpolation", {{0, 1}, {0, 0, 0, 1, 1, 1}, "translation", "BOUNCE"}, "BOUNCE"}};
 
