@@ -1,12 +1,14 @@
-// Command lines: arguments with zeros between, run in a folder that has a scene, lights and a strokes file. Arguments
-// that lead out of the folder are left out.
+// Command lines: arguments with zeros between, run in a folder that has a scene and whatever else commands read, each
+// time the same. Arguments that lead out of the folder are left out.
 
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/program.h"
+#include "renderer/core/atomic_file.h"
 #include "tests/fuzz/input_file.h"
 
 namespace chiaro::fuzz {
@@ -20,12 +22,41 @@ constexpr std::string_view kScene = R"({"asset":{"version":"2.0"},"scene":0,"sce
 constexpr std::string_view kLights = R"({"lights":[{"position":[0,0,1],"intensity":[1,1,1]}]})";
 constexpr std::string_view kStrokes = R"({"strokes":[{"color":[1,1,1],"path":[[0.2,0.2,0]]}]})";
 
-void enter_folder() {
-  std::filesystem::current_path(folder());
-  input_file("scene.gltf", kScene);
-  input_file("lights.json", kLights);
-  input_file("strokes.json", kStrokes);
+constexpr std::string_view kConstraints = R"({"max_intensity":10,"one_color":true})";
+
+int run(const std::vector<std::string>& arguments) {
+  std::vector<const char*> pointers;
+  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+  return cli::run_program(int(pointers.size()), pointers.data());
 }
+
+// The files of the folder, as they are at the start: those above and what commands make of them.
+class Files {
+ public:
+  Files() {
+    std::filesystem::current_path(folder());
+    input_file("scene.gltf", kScene);
+    input_file("lights.json", kLights);
+    input_file("strokes.json", kStrokes);
+    input_file("constraints.json", kConstraints);
+    const auto make = [](const std::vector<std::string>& arguments) { CHIARO_CHECK(run(arguments) == cli::kDone); };
+    const std::string scene = "scene.gltf", lights = "lights.json";
+    make({"chiaro", "illuminate", scene, "--lights", lights, "-o", "t.glb", "--samples", "1", "--max-edge", "0.5"});
+    make({"chiaro", "bake", scene, "-o", "c.exr", "--grid", "2,2,2", "--samples", "1", "--max-edge", "0.5"});
+    make({"chiaro", "render", scene, "--lights", lights, "-o", "f.exr", "--width", "4", "--samples", "1"});
+    for (const auto& entry : std::filesystem::directory_iterator(".")) {
+      contents_.emplace_back(entry.path().filename().string(), renderer::read_file(entry.path()));
+    }
+  }
+
+  void restore() const {
+    for (const auto& entry : std::filesystem::directory_iterator(".")) std::filesystem::remove_all(entry.path());
+    for (const auto& [name, bytes] : contents_) input_file(name, bytes);
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> contents_;
+};
 
 // Fewer receivers and pixels than by default, and searches that end early, so that no input takes seconds.
 void make_coarse(std::vector<std::string>& arguments) {
@@ -62,13 +93,11 @@ std::vector<std::string> arguments_of(std::string_view input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace chiaro;
-  static const bool entered = (fuzz::enter_folder(), true);
-  CHIARO_CHECK(entered);
+  static const fuzz::Files files;
+  files.restore();
   std::vector<std::string> arguments = fuzz::arguments_of(fuzz::text_of(data, size));
   fuzz::make_coarse(arguments);
-  std::vector<const char*> pointers;
-  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
-  const int code = cli::run_program(int(pointers.size()), pointers.data());
+  const int code = fuzz::run(arguments);
   constexpr std::array kKnown{cli::kDone, cli::kFailed, cli::kWrongUsage, cli::kLimitExceeded};
   CHIARO_CHECK(std::find(kKnown.begin(), kKnown.end(), code) != kKnown.end());
   return 0;

@@ -40,5 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace chiaro;
   const std::filesystem::path path = fuzz::gltf_file(data, size);
   fuzz::read_or_refuse(path, [&] { fuzz::check(renderer::load_gltf(path).scene); });
+  const renderer::LoadOptions halfway{.animation = {"", 0.5}, .variant = {}};
+  fuzz::read_or_refuse(path, [&] { fuzz::check(renderer::load_gltf(path, halfway).scene); });
   return 0;
 }

@@ -9,8 +9,15 @@ seeds=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/seeds
 name=$(basename "$program")
 corpora=("$folder/corpus" "$seeds/${name#fuzz_}")
 case $name in fuzz_frame | fuzz_target) corpora+=("$seeds/gltf") ;; esac
+case $name in
+  fuzz_frame | fuzz_target | fuzz_gltf) words=gltf ;;
+  fuzz_image_file | fuzz_transport_cache) words=exr ;;
+  *) words=${name#fuzz_} ;;
+esac
+dictionary=()
+[ ! -e "$seeds/../dictionaries/$words.dict" ] || dictionary=("-dict=$seeds/../dictionaries/$words.dict")
 
 # Leaks are the unit tests' to find: the libraries that are not compiled with the sanitizer keep what they have.
 export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
 exec "$program" -max_total_time="$seconds" -timeout=20 -detect_leaks=0 -rss_limit_mb=4000 -malloc_limit_mb=2000 \
-  -print_final_stats=1 -close_fd_mask=1 -artifact_prefix="$folder/" "${corpora[@]}"
+  -print_final_stats=1 -close_fd_mask=1 -artifact_prefix="$folder/" "${dictionary[@]}" "${corpora[@]}"
