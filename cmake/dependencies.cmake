@@ -45,7 +45,7 @@ endmacro()
 
 require_library(OpenColorIO OpenColorIO/OpenColorIO.h OpenColorIO libopencolorio-dev)
 require_library(WebP webp/decode.h webp libwebp-dev)
-require_library(HEIF libheif/heif.h heif libheif-dev)
+require_library(AVIF avif/avif.h avif libavif-dev)
 
 # Scripts that the report's page embeds.
 macro(require_script variable file debian_package)

@@ -2,7 +2,7 @@
 # Installs the Debian 12 packages that chiaro is built on, and those named as arguments, where they are missing. Works as
 # root and with sudo.
 set -euo pipefail
-packages=(g++ cmake ninja-build python3 libembree-dev libopenimageio-dev openimageio-tools libpng-dev libwebp-dev libheif-dev libopenexr-dev libopencolorio-dev libtinygltf-dev
+packages=(g++ cmake ninja-build python3 libembree-dev libopenimageio-dev openimageio-tools libpng-dev libwebp-dev libavif-dev libopenexr-dev libopencolorio-dev libtinygltf-dev
   libceres-dev libeigen3-dev libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev libnanoflann-dev libdraco-dev libmeshoptimizer-dev libgtest-dev libbenchmark-dev
   libjs-three libjs-chart.js "$@")
 

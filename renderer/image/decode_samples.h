@@ -9,7 +9,7 @@
 
 namespace chiaro::renderer {
 
-// PNG, WebP, AVIF or HEIC.
+// PNG, WebP or AVIF.
 bool has_samples(std::string_view encoded);
 
 // As read_png_header and decode_png, and so on.

@@ -21,7 +21,7 @@ constexpr std::int64_t kMaxTexels = std::int64_t{1} << 28;
 
 // Of the formats that are read here, those that textures come in.
 bool is_of_textures(std::string_view format) {
-  return format == "png" || format == "jpeg" || format == "webp" || format == "heif";
+  return format == "png" || format == "jpeg" || format == "webp" || format == "avif";
 }
 
 [[noreturn]] void fail(const std::string& label, const std::string& problem) {
@@ -106,6 +106,7 @@ std::vector<std::uint8_t> narrowed(const std::vector<std::uint16_t>& samples) {
 Texture decode_samples_texture(std::string_view encoded, const std::string& label) {
   const SamplesHeader header = read_samples_header(encoded, label);
   check_size({header.width, header.height, 1, header.channels, header.bytes()}, encoded.size(), label);
+  if (header.orientation != 1) fail(label, "is to be turned or mirrored before it is shown");
   std::vector<std::uint8_t> samples = decode_samples(encoded, label);
   const auto texture = [&](auto texels) {
     return texture_of(std::move(texels), header.width, header.height, header.channels);

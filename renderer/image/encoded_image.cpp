@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "renderer/core/file_extension.h"
-#include "renderer/image/decode_heif.h"
+#include "renderer/image/decode_avif.h"
 #include "renderer/image/decode_png.h"
 #include "renderer/image/decode_webp.h"
 
@@ -126,7 +126,7 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
 std::string_view format_of(std::string_view first_bytes, const std::filesystem::path& name) {
   if (is_png(first_bytes)) return "png";
   if (is_webp(first_bytes)) return "webp";
-  if (is_heif(first_bytes)) return "heif";
+  if (is_avif(first_bytes)) return "avif";
   for (const Signature& signature : kSignatures) {
     if (first_bytes.starts_with(signature.bytes)) return signature.format;
   }

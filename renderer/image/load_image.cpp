@@ -27,7 +27,7 @@ namespace {
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 31;
 constexpr std::int64_t kMaxPadded = std::int64_t{1} << 27;  // pixels of a picture that there is only a part of
 
-constexpr const char* kFormats = "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, HEIC, TGA or PNM picture";
+constexpr const char* kFormats = "an EXR, PNG, JPEG, TIFF, Radiance, WebP, AVIF, TGA or PNM picture";
 
 // OpenImageIO renames some of OpenEXR's attributes on reading; these are the names as the file has them.
 std::string exr_name(const std::string& name) {
@@ -123,7 +123,7 @@ std::unique_ptr<OIIO::ImageInput> open_input(const OpenImage& image, const std::
                "an image"});
 }
 
-// OpenImageIO decodes AVIF and HEIC as it opens them, whatever their size.
+// OpenImageIO decodes AVIF as it opens it, whatever its size.
 OIIO::ImageSpec spec_of(const SamplesHeader& header) {
   return {header.width, header.height, header.channels,
           header.bytes_per_sample == 2 ? OIIO::TypeUInt16 : OIIO::TypeUInt8};
@@ -140,7 +140,7 @@ OpenImage open(const std::filesystem::path& path) {
     image.header = read_samples_header(image.encoded, path.string());
     image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
   }
-  if (image.format == "heif") {
+  if (image.format == "avif") {
     image.spec = spec_of(image.header);
     return image;
   }
@@ -189,6 +189,7 @@ OIIO::ImageSpec picture_spec(const OpenImage& open) {
 }
 
 int orientation_of(const OpenImage& open) {
+  if (open.format == "avif") return open.header.orientation;
   const int orientation = open.format == "openexr" ? 1 : open.spec.get_int_attribute("Orientation", 1);
   // OpenImageIO takes Radiance's "+X +Y" and "-X -Y" for one another.
   const bool other_way = open.format == "hdr" && (orientation == 6 || orientation == 8);
@@ -225,7 +226,7 @@ void require_same_shape(const OpenImage& open, const OIIO::ImageSpec& spec, cons
 
 // OpenImageIO does not say of all formats whose colours never are multiplied that they are not.
 bool has_associated_alpha(const OIIO::ImageSpec& spec, std::string_view format) {
-  if (spec.alpha_channel < 0 || format == "png" || format == "webp" || format == "heif") return false;
+  if (spec.alpha_channel < 0 || format == "png" || format == "webp" || format == "avif") return false;
   return format == "openexr" || spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 

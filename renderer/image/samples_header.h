@@ -24,6 +24,7 @@ struct SamplesHeader {
   int channels = 0;             // grey, grey and alpha, RGB or RGBA; palettes are looked up
   int bytes_per_sample = 1;     // or 2, in the order of this machine
   const char* curve = nullptr;  // that the file says they have, where it is not one of common displays
+  int orientation = 1;          // as in image_orientation.h
 
   std::uintmax_t bytes() const { return std::uintmax_t(width) * height * channels * bytes_per_sample; }
 };
