@@ -20,6 +20,7 @@
 #include "renderer/image/image_orientation.h"
 #include "renderer/image/radiance_header.h"
 #include "renderer/image/read_through_library.h"
+#include "renderer/image/tiff_header.h"
 
 namespace chiaro::renderer {
 namespace {
@@ -146,6 +147,7 @@ OpenImage open(const std::filesystem::path& path) {
   }
   std::optional<std::string> damage = find_damage(image.format, image.format == "jpeg" ? read_file(path) : first);
   if (image.format == "openexr") damage = find_exr_header_damage(path);
+  if (image.format == "tiff") damage = find_tiff_header_damage(path);
   if (damage) throw Error({path.string(), "", *damage, "a whole image"});
   image.input = open_input(image, path);
   image.part = choose_part(*image.input, image.format, path.string());
