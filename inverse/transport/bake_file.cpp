@@ -1,6 +1,8 @@
 #include "inverse/transport/bake_file.h"
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -10,6 +12,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/file_lock.h"
 #include "renderer/core/seconds_since.h"
+#include "renderer/image/exr_chunks.h"
 #include "renderer/image/exr_header.h"
 
 namespace chiaro::inverse {
@@ -73,7 +76,13 @@ void put_into(TransportBlock& block, const TransportBlock& piece) {
   }
 }
 
-// Fills the block from the parts that have its receivers; returns the first that lacks some of them, or nullptr.
+// What is no light transport is no number.
+bool is_transport(const TransportBlock& block) {
+  return std::all_of(block.indirect.begin(), block.indirect.end(), [](Vec3f v) { return is_finite(v); });
+}
+
+// Fills the block from the parts that have its receivers; returns the first that lacks some of them, or holds
+// what is none, or nullptr.
 const TransportCacheReader* read(Parts parts, TransportBlock& block) {
   block.resize();
   for (const auto& part : parts) {
@@ -83,7 +92,7 @@ const TransportCacheReader* read(Parts parts, TransportBlock& block) {
     const std::size_t last = std::min(block.first_receiver + block.receiver_count, part->last_receiver());
     if (piece.first_receiver >= last) continue;
     piece.receiver_count = last - piece.first_receiver;
-    if (!part->read(piece)) return part.get();
+    if (!part->read(piece) || !is_transport(piece)) return part.get();
     put_into(block, piece);
   }
   return nullptr;
@@ -136,13 +145,21 @@ Baker::Place take_over(Parts old, Range range, TransportCacheWriter& writer, con
   return end.place;
 }
 
-// nullptr: there is none, or it ends within its header, and has nothing. Error where it is another kind of file, or of
-// another version.
+// As a computer without power leaves what it had not written yet.
+bool begins_with_zeros(const fs::path& file) {
+  std::array<char, 8> magic_and_version{};
+  std::ifstream(file, std::ios::binary).read(magic_and_version.data(), magic_and_version.size());
+  return magic_and_version == std::array<char, 8>{};
+}
+
+// nullptr: there is none, or it ends before its first tile, and has nothing. Error where it is another kind of file, or
+// of another version.
 std::unique_ptr<TransportCacheReader> open_unfinished(const fs::path& file) {
   constexpr std::uintmax_t kMagicAndVersion = 8;  // bytes
   std::error_code ignored;
   const bool begun = fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) >= kMagicAndVersion;
-  if (!begun || renderer::find_exr_header_damage(file)) return nullptr;
+  if (!begun || begins_with_zeros(file) || renderer::find_exr_header_damage(file)) return nullptr;
+  if (!renderer::ExrChunks(file).has_table()) return nullptr;
   return std::make_unique<TransportCacheReader>(file);
 }
 
@@ -197,9 +214,8 @@ void go_on(const fs::path& unfinished, const TransportCache& header, Range range
   try {
     Unfinished next{replace_idle_file(aside), begin_anew(aside, header, range)};
     start = take_over(Parts(&unfinished_cache, 1), range, *next.writer, control);
-    std::error_code renamed;
-    fs::rename(aside, unfinished, renamed);
-    if (renamed) throw Error({unfinished.string(), "", "cannot be written: " + renamed.message(), ""});
+    next.writer->flush();
+    renderer::move_into_place(aside, unfinished);
     bake = std::move(next);
   } catch (...) {
     std::error_code ignored;

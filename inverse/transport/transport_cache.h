@@ -62,6 +62,7 @@ class TransportCacheWriter {
                        std::size_t last_receiver);
   // Whole tiles, in the order of lights, then of receivers: all receivers where there are more than kLights lights.
   void write(const TransportBlock& block);
+  void flush() { file_.flush(); }
   void close();
 
  private:

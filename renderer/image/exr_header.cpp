@@ -137,20 +137,35 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<b
   }
 }
 
-}  // namespace
+struct Headers {
+  std::optional<std::string> damage{};
+  std::optional<std::uint64_t> end{};  // of the only one
+};
 
-std::optional<std::string> find_exr_header_damage(const std::filesystem::path& path) {
+Headers read_headers(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);
-  if (!stream || no_size || read_number(stream) != kMagic) return std::nullopt;
+  if (!stream || no_size || read_number(stream) != kMagic) return {};
   const std::uint32_t version = read_number(stream);
   const bool multipart = (version & kMultipart) != 0;
   const auto file_is_tiled = multipart ? std::nullopt : std::optional((version & kTiled) != 0);
-  std::optional<std::string> damage;
-  bool more = pass_header(stream, size, file_is_tiled, damage);
-  while (!damage && multipart && more) more = pass_header(stream, size, file_is_tiled, damage);
-  return damage;
+  Headers headers;
+  bool more = pass_header(stream, size, file_is_tiled, headers.damage);
+  while (!headers.damage && multipart && more) more = pass_header(stream, size, file_is_tiled, headers.damage);
+  if (!headers.damage && !multipart) headers.end = std::uint64_t(stream.tellg());
+  return headers;
+}
+
+}  // namespace
+
+std::optional<std::string> find_exr_header_damage(const std::filesystem::path& path) {
+  return read_headers(path).damage;
+}
+
+std::optional<std::uint64_t> end_of_exr_header(const std::filesystem::path& path) {
+  const Headers headers = read_headers(path);
+  return headers.damage ? std::nullopt : headers.end;
 }
 
 }  // namespace chiaro::renderer

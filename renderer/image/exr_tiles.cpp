@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <utility>
 
 #include <ImathBox.h>
 #include <ImathVec.h>
@@ -59,6 +61,11 @@ class OutputStream : public Imf::OStream {
   }
   std::uint64_t tellp() override { return std::uint64_t(std::streamoff(stream_.tellp())); }
   void seekp(std::uint64_t position) override { stream_.seekp(std::streamoff(position)); }
+  void flush() {
+    errno = 0;
+    stream_.flush();
+    check();
+  }
   void close() {
     errno = 0;
     stream_.close();
@@ -212,6 +219,7 @@ ExrTileWriter::ExrTileWriter(const std::filesystem::path& path, const ExrTiles& 
   Imf::setGlobalThreadCount(thread_count());
   try {
     file_ = std::make_unique<File>(path, header_of(shape, attributes));
+    file_->stream.flush();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
@@ -239,6 +247,15 @@ void ExrTileWriter::write(int tile_row, int first, int last, std::span<const flo
   }
 }
 
+void ExrTileWriter::flush() {
+  CHIARO_CHECK(file_ != nullptr);
+  try {
+    file_->stream.flush();
+  } catch (const std::exception& error) {
+    fail_to_write(path_, error.what());
+  }
+}
+
 void ExrTileWriter::close() {
   CHIARO_CHECK(file_ != nullptr);
   file_->output.reset();  // writes where the tiles are, and keeps errors to itself
@@ -252,20 +269,19 @@ void ExrTileWriter::close() {
 }
 
 struct ExrTileReader::File {
-  explicit File(const std::filesystem::path& path) : input(path.c_str(), thread_count()), chunks(path) {}
-
-  // Whole tiles; `window`: their pixels. False where any is missing or damaged.
-  bool decode(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) {
-    return input.isComplete() ? unpack(shape, tiles, window, pixels) : search(shape, tiles, window, pixels);
+  explicit File(const std::filesystem::path& path) : input(path.c_str(), thread_count()), chunks(path) {
+    if (input.isComplete()) return;
+    found.emplace();
+    for (const ExrTilePlace& place : chunks.find_tiles()) found->emplace(std::pair(place.x, place.y), place);
   }
 
-  // One chunk a tile.
-  bool unpack(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) const {
+  // Whole tiles, one chunk each; `window`: their pixels. False where any is missing or damaged.
+  bool decode(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) const {
     std::atomic<bool> whole = true;
     parallel_for(tiles.area(), [&](std::size_t i) {
       const int x = tiles.left + int(i % tiles.width()), y = tiles.top + int(i / tiles.width());
       const Window of_tile = pixels_of(shape, {x, x + 1, y, y + 1});
-      const std::vector<char> bytes = whole ? chunks.read_tile(x, y) : std::vector<char>{};
+      const std::vector<char> bytes = whole ? read_tile(x, y) : std::vector<char>{};
       if (bytes.size() != of_tile.area() * shape.channels.size() * sizeof(half)) {
         whole = false;
       } else {
@@ -275,19 +291,15 @@ struct ExrTileReader::File {
     return whole;
   }
 
-  // In a file that is not finished, and does not say where its tiles are.
-  bool search(const ExrTiles& shape, const Window& tiles, const Window& window, half* pixels) {
-    try {
-      input.setFrameBuffer(frame_buffer(shape, pixels, window.left, int(window.width()), window.top));
-      input.readTiles(tiles.left, tiles.right - 1, tiles.top, tiles.bottom - 1);
-    } catch (const std::exception&) {
-      return false;
-    }
-    return true;
+  std::vector<char> read_tile(int x, int y) const {
+    if (!found) return chunks.read_tile(x, y);
+    const auto place = found->find({x, y});
+    return place == found->end() ? std::vector<char>{} : chunks.read_tile(place->second);
   }
 
   Imf::TiledInputFile input;
   ExrChunks chunks;
+  std::optional<std::map<std::pair<int, int>, ExrTilePlace>> found;  // in a file that was not finished
 };
 
 bool ExrTileReader::is_tiled(const std::filesystem::path& path) {

@@ -35,6 +35,7 @@ class ExrTileWriter {
   // Columns [first, last) of a row of tiles, whole tiles. Row after row, and within each from left to right. What
   // halves cannot hold is clamped. Error where the disk is full.
   void write(int tile_row, int first, int last, std::span<const float> pixels);
+  void flush();  // what is written so far. Error as above
   // Before it the file is not whole. Error as above.
   void close();
 

@@ -9,6 +9,8 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/image/exr_chunks.h"
+#include "renderer/image/exr_header.h"
 #include "tests/support/code_scenes.h"
 #include "tests/support/retile.h"
 #include "tests/support/temporary_folder.h"
@@ -78,6 +80,24 @@ TEST_F(BakeFile, GoesOnFromWhereverItWasCut) {
     bake_as({.shard = {}, .resume = true}, "resumed.exr");
     EXPECT_EQ(read_file(file), bytes) << part;
     EXPECT_FALSE(fs::exists(unfinished_bake(file)));
+  }
+}
+
+// A kill before the first tiles are written, and a computer that loses power.
+TEST_F(BakeFile, GoesOnFromFilesWithoutTilesOrWithZeros) {
+  const std::string bytes = whole();
+  const std::size_t table = *renderer::end_of_exr_header(folder_ / "whole.exr");
+  const std::size_t tiles = std::size_t(renderer::ExrChunks(folder_ / "whole.exr").count());
+  const std::size_t first = table + 8 * tiles, end = bytes.size() / 4096 * 4096 * 3 / 5;
+  std::string without_table = bytes;
+  std::fill_n(without_table.begin() + std::ptrdiff_t(table), 8 * tiles, '\0');
+  const auto zeros = [&](std::size_t from) { return without_table.substr(0, from) + std::string(end - from, '\0'); };
+  for (const std::string& left : {zeros(0), bytes.substr(0, table), bytes.substr(0, table + 9),
+                                  bytes.substr(0, first - 1), zeros(first), zeros(end / 2 / 4096 * 4096)}) {
+    const fs::path file = folder_ / "resumed.exr";
+    std::ofstream(unfinished_bake(file), std::ios::binary) << left;
+    bake_as({.shard = {}, .resume = true}, "resumed.exr");
+    EXPECT_EQ(read_file(file), bytes) << left.size();
   }
 }
 

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/sampler.h"
+#include "renderer/image/exr_header.h"
 #include "renderer/image/exr_tiles.h"
 #include "renderer/image/image_file.h"
 #include "tests/support/error_of.h"
@@ -74,6 +78,64 @@ TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
   EXPECT_FALSE(ExrTileReader(path).read(0, 8, 0, 8, pixels));
   EXPECT_TRUE(ExrTileReader(path).read(0, 4, 0, 8, std::span(pixels).subspan(0, 64)));
   EXPECT_NE(test::error_of([&] { load_image(path); }).find("t.exr: pixels: a tile does not hold"), std::string::npos);
+}
+
+// Four tiles of noise, which cannot be compressed, and four of nothing, which can.
+std::string write_unfinished(const std::filesystem::path& path) {
+  const ExrTiles shape{.width = 32,
+                       .height = 16,
+                       .first_column = 0,
+                       .last_column = 32,
+                       .tile_width = 8,
+                       .tile_height = 8,
+                       .channels = {"a"}};
+  ExrTileWriter writer(path, shape, {});
+  Sampler sampler(1, 0, 0);
+  std::vector<float> noise(256);
+  for (float& value : noise) {  // any normal half
+    const float size = 1 + std::floor(1024 * sampler.next_1d()) / 1024;
+    value = std::ldexp(sampler.next_1d() < 0.5F ? -size : size, int(30 * sampler.next_1d()) - 14);
+  }
+  writer.write(0, 0, 32, noise);
+  writer.write(1, 0, 32, std::vector<float>(256, 0.5F));
+  writer.close();
+  std::string bytes = read_file(path);
+  std::fill_n(bytes.begin() + std::ptrdiff_t(*end_of_exr_header(path)), 8 * 8, '\0');
+  return bytes;
+}
+
+TEST(ExrChunks, TilesAreFoundInFilesThatDoNotSayWhereTheyAre) {
+  const test::TemporaryFolder folder;
+  const std::string bytes = write_unfinished(folder / "t.exr");
+  const std::size_t first = *end_of_exr_header(folder / "t.exr") + 8 * 8, tile = 20 + 128;
+  EXPECT_EQ(ExrChunks(folder / "t.exr").count(), 8);
+  for (std::size_t size = 0; size <= bytes.size(); size += 3) {
+    const ExrChunks chunks(folder.write("t.exr", bytes.substr(0, size)));
+    const std::vector<ExrTilePlace> places = chunks.find_tiles();
+    if (size >= first) {
+      EXPECT_TRUE(chunks.has_table());
+    }
+    // Of noise, which is stored as it is, not the last.
+    const std::size_t whole = size < first ? 0 : (size - first) / tile;
+    if (whole < 4) {
+      ASSERT_EQ(places.size(), whole == 0 ? 0 : whole - 1) << size;
+    }
+    for (const ExrTilePlace& place : places) EXPECT_EQ(chunks.read_tile(place).size(), 128U);
+  }
+  EXPECT_EQ(ExrChunks(folder.write("t.exr", bytes)).find_tiles().size(), 8U);
+}
+
+TEST(ExrChunks, ZerosAndTilesThatComeAgainAreNoTiles) {
+  const test::TemporaryFolder folder;
+  const std::string bytes = write_unfinished(folder / "t.exr");
+  const std::size_t first = *end_of_exr_header(folder / "t.exr") + 8 * 8, tile = 20 + 128;
+  for (const auto& [begin, count] : {std::pair(60UL, 0UL), {2 * tile + 60, 2UL}, {3 * tile, 2UL}}) {
+    std::string zeros = bytes;
+    std::fill(zeros.begin() + std::ptrdiff_t(first + begin), zeros.end(), '\0');
+    EXPECT_EQ(ExrChunks(folder.write("t.exr", zeros)).find_tiles().size(), count) << begin;
+  }
+  const std::string again = bytes.substr(0, first + 2 * tile) + bytes.substr(first);
+  EXPECT_EQ(ExrChunks(folder.write("t.exr", again)).find_tiles().size(), 1U);
 }
 
 // 2²⁵ of them in 500 bytes.
