@@ -86,7 +86,8 @@ void refuse_options_of_frames(const CompareCommand& options) {
 int compare_two_targets(const CompareCommand& options, Session& session) {
   refuse_options_of_frames(options);
   const inverse::Target a = inverse::load_illumination(options.a, options.target_scale);
-  const inverse::Target b = inverse::load_target(options.b, options.target_scale);
+  const inverse::Target b = inverse::load_illumination(options.b, options.target_scale);
+  require_weight(b, options.b);
   session.warn(a.warnings);
   session.warn(b.warnings);
   if (!a.has_scaled_colors && !b.has_scaled_colors) {

@@ -39,7 +39,7 @@ inverse::Target make_base(const PaintCommand& options, const LoadedStage& stage,
   const renderer::Lights lights =
       choose_lights(stage, "", in_config(options.transport.environment, options.picture.view.config), session);
   if (!options.from.empty()) {
-    return load_target_on(stage, options.from, options.target_scale, session);
+    return load_illumination_on(stage, options.from, options.target_scale, session);
   }
   if (strokes.base == inverse::StrokeBase::kBlack)
     return black_target(choose_receivers(*stage.tracer, options.surface, session));

@@ -49,7 +49,7 @@ JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const
   require_a_place(*stage.scene, grid, problem.places);
   inverse::Baker baker(*stage.tracer, target.receivers, grid, problem.bake, memory_left({}), session.control());
   const inverse::BakeSummary summary =
-      inverse::bake_to_file(baker, options.folder() / "cache.exr", {}, session.control());
+      inverse::bake_to_file(baker, options.folder() / "cache.exr", {.keeps_unfinished = false}, session.control());
   return bake_summary(baker.header(), summary);
 }
 

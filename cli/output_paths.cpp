@@ -124,6 +124,7 @@ void require_replaceable(const std::filesystem::path& wanted) {
   const auto refuse = [&](const char* problem) {
     throw Error({wanted.string(), "", fmt::format("cannot be replaced: {}", problem), "another name for the output"});
   };
+  if (!S_ISREG(there.stx_mode) && !S_ISLNK(there.stx_mode)) refuse("it is a pipe, a socket or a device");
   if (there.stx_attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND)) refuse("its attributes forbid it");
   if (there.stx_attributes & STATX_ATTR_MOUNT_ROOT) refuse("something is mounted on it");
   struct stat around {};

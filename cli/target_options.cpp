@@ -228,13 +228,10 @@ class TargetLoading {
       session_.warn(fmt::format("{} of {} painted values lie on surfaces without receivers, and are left out",
                                 result.not_placed, values_.size()));
     }
-    const auto& weight = result.target.weight;
-    for (std::size_t i = 0; i < weight.size(); ++i) {
-      if (weight[i] > 0 && max_component(result.target.illumination[i]) > 0) return std::move(result.target);
-    }
+    if (wants_light(result.target)) return std::move(result.target);
     const NamedFile& first = choices_.images.empty() ? choices_.lightmaps.front() : choices_.images.front();
-    throw Error(
-        {first.file, "", "an empty target: black, or of surfaces without receivers", "illumination > 0 somewhere"});
+    throw Error({first.file, "", "an empty target: black, or all but, or of surfaces without receivers",
+                 fmt::format("illumination of {:g} cd/m² or more somewhere", inverse::kDimmest)});
   }
 
   const LoadedStage& stage_;
@@ -286,14 +283,26 @@ void add_target_scale_option(CLI::App& command, float& scale) {
   add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, scale, kPositive);
 }
 
-inverse::Target load_target_on(const LoadedStage& stage, const std::string& file, float scale, Session& session) {
-  inverse::Target target = inverse::load_target(file, scale);
+namespace {
+
+inverse::Target on_scene(inverse::Target target, const LoadedStage& stage, const std::string& file, float scale,
+                         Session& session) {
   place_on_scene(*stage.tracer, target.receivers, file, session);
   session.warn(target.warnings);
   if (scale != 1 && !target.has_scaled_colors) {
     session.warn(fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", file));
   }
   return target;
+}
+
+}  // namespace
+
+inverse::Target load_target_on(const LoadedStage& stage, const std::string& file, float scale, Session& session) {
+  return on_scene(inverse::load_target(file, scale), stage, file, scale, session);
+}
+
+inverse::Target load_illumination_on(const LoadedStage& stage, const std::string& file, float scale, Session& session) {
+  return on_scene(inverse::load_illumination(file, scale), stage, file, scale, session);
 }
 
 bool is_target_file_alone(const TargetChoices& choices) { return choices.images.empty() && choices.lightmaps.empty(); }

@@ -51,5 +51,7 @@ void add_target_scale_option(CLI::App& command, float& scale);
 
 // A target file, its samples placed on the scene. Warnings are passed on, and of a scale that does nothing with it.
 inverse::Target load_target_on(const LoadedStage& stage, const std::string& file, float scale, Session& session);
+// The same of one that may want no light.
+inverse::Target load_illumination_on(const LoadedStage& stage, const std::string& file, float scale, Session& session);
 
 }  // namespace chiaro::cli

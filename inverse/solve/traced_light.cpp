@@ -13,9 +13,10 @@ namespace {
 
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
-constexpr int kFirstPart = 8;          // of the samples, at most
-constexpr int kMoreOfSamples = 4;      // at least, as the noise of few is known only roughly
-constexpr std::uint64_t kParts = 100;  // purpose of the first one's seed
+constexpr double kLeastPaths = 1 << 13;  // that noise is estimated from: of too few it is not known either
+constexpr int kFirstPart = 8;            // of the samples, at most
+constexpr int kMoreOfSamples = 4;        // at least, as the noise of few is known only roughly
+constexpr std::uint64_t kParts = 100;    // purpose of the first one's seed
 // As the error is known without this noise, it may be …
 constexpr double kNoiseBesideTarget = 1;   // … of the target's …
 constexpr double kNoiseOfFew = 2;          // … or twice, where each light brings much of it, …
@@ -75,6 +76,18 @@ struct SquaredSums {
     return {all, noise / wanted, std::sqrt(2 * spread) / wanted};
   }
 };
+
+// How many receivers count, as the square of the sum of their weights is of the sum of their squares.
+double receivers_that_count(const Target& target) {
+  double sum = 0, squares = 0;
+  for (const float weight : target.weight) sum += double(weight), squares += double(weight) * double(weight);
+  return sum * sum / squares;
+}
+
+int samples_to_begin_with(const Target& target) {
+  return int(std::clamp(kLeastPaths / receivers_that_count(target), double(kLeastVerificationSamples),
+                        double(kMostVerificationSamples)));
+}
 
 // Relative to the target.
 double noise_that_does_not_matter(const FreshTrace& traced, const Target& target) {
@@ -139,7 +152,7 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
 FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
                             const renderer::Control& control, const StageClock& clock) {
   const int all = verification_samples(options, problem.target.receivers.size());
-  const int few = std::min(all, kLeastVerificationSamples);
+  const int few = std::min(all, samples_to_begin_with(problem.target));
   const Tracing tracing{problem, lights, options, control};
   FreshTrace first = tracing.part(few, 0);
   // How long more would take is known now.

@@ -11,8 +11,6 @@
 namespace chiaro::inverse {
 namespace {
 
-constexpr float kDimmest = 1e-18F;  // cd/m²: at some receiver at least
-
 using renderer::Error;
 using renderer::VertexMesh;
 using renderer::VertexMeshPart;
@@ -68,13 +66,8 @@ void append_standard_error(Target& target, const VertexMeshPart& part, const std
 }
 
 void check_not_black(const Target& target, const std::string& file) {
-  const auto& weight = target.weight;
-  if (std::all_of(weight.begin(), weight.end(), [](float w) { return w == 0; })) {
-    throw Error({file, "", "an empty target: every _WEIGHT is 0", "a weight > 0 somewhere"});
-  }
-  for (std::size_t i = 0; i < weight.size(); ++i) {
-    if (weight[i] > 0 && max_component(target.illumination[i]) >= kDimmest) return;
-  }
+  require_weight(target, file);
+  if (wants_light(target)) return;
   throw Error({file, "", "an empty target: black, or all but, wherever its weight is not 0",
                fmt::format("illumination of {:g} cd/m² or more somewhere", kDimmest)});
 }
@@ -103,6 +96,19 @@ std::vector<T> slice(const std::vector<T>& values, std::size_t first, std::size_
 }
 
 }  // namespace
+
+void require_weight(const Target& target, const std::string& file) {
+  const auto& weight = target.weight;
+  if (std::any_of(weight.begin(), weight.end(), [](float w) { return w > 0; })) return;
+  throw Error({file, "", "an empty target: every _WEIGHT is 0", "a weight > 0 somewhere"});
+}
+
+bool wants_light(const Target& target) {
+  for (std::size_t i = 0; i < target.weight.size(); ++i) {
+    if (target.weight[i] > 0 && max_component(target.illumination[i]) >= kDimmest) return true;
+  }
+  return false;
+}
 
 Target load_target(const std::filesystem::path& path, float target_scale) {
   Target target = load_illumination(path, target_scale);

@@ -18,10 +18,16 @@ struct Target {
   std::vector<std::string> warnings = {};  // one line each, naming the file that it was read from: what was left out
 };
 
+constexpr float kDimmest = 1e-18F;  // cd/m² that lights are found for: at some receiver whose weight is not 0
+
+bool wants_light(const Target& target);
+// Error, naming `file`, where every weight is 0.
+void require_weight(const Target& target, const std::string& file);
+
 // `.glb`/`.gltf` with _ILLUMINATION, or COLOR_0 × target_scale (cd/m²) where that is absent. Error where a file has
-// neither ("an empty target"), or where every value or every weight is zero.
+// neither ("an empty target"), or where it wants no light.
 Target load_target(const std::filesystem::path& path, float target_scale = 1);
-// The same, which may be of zeros alone.
+// The same, which may want none.
 Target load_illumination(const std::filesystem::path& path, float target_scale = 1);
 // Error, naming the vertex, for illumination that load_target would refuse.
 void save_target(const Target& target, const std::filesystem::path& path);

@@ -255,6 +255,22 @@ void require_all(const std::vector<std::unique_ptr<TransportCacheReader>>& shard
       {shards.front()->path().string(), "", fmt::format("no part has receiver {} of {}", next, count), "all parts"});
 }
 
+BakeSummary bake_and_write(Baker& baker, Range range, Baker::Place start, TransportCacheWriter& writer,
+                           const renderer::Control& control) {
+  double seconds = 0;
+  const auto timed = [&](const auto& act) {
+    const auto begin = std::chrono::steady_clock::now();
+    act();
+    seconds += renderer::seconds_since(begin);
+  };
+  const auto write = [&](const TransportBlock& block) { timed([&] { writer.write(block); }); };
+  baker.bake(range.first, range.last, start, write, control);
+  timed([&] { writer.close(); });
+  BakeSummary summary = baker.summary();
+  summary.write_seconds = seconds;
+  return summary;
+}
+
 }  // namespace
 
 fs::path unfinished_bake(const fs::path& file) { return file.string() + ".unfinished"; }
@@ -282,18 +298,17 @@ BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptio
     fs::remove(unfinished.string() + kNew, ignored);  // of one that was killed as it went on
     bake.writer = begin_anew(unfinished, header, range);
   }
-  double write_seconds = 0;
-  const auto write = [&](const TransportBlock& block) {
-    const auto begin = std::chrono::steady_clock::now();
-    bake.writer->write(block);
-    write_seconds += renderer::seconds_since(begin);
-  };
-  baker.bake(range.first, range.last, start, write, control);
+  BakeSummary summary;
+  try {
+    summary = bake_and_write(baker, range, start, *bake.writer, control);
+  } catch (const Error&) {
+    std::error_code ignored;
+    if (!options.keeps_unfinished) fs::remove(unfinished, ignored);
+    throw;
+  }
   const auto begin = std::chrono::steady_clock::now();
-  bake.writer->close();
   renderer::move_into_place(unfinished, file);
-  BakeSummary summary = baker.summary();
-  summary.write_seconds = write_seconds + renderer::seconds_since(begin);
+  summary.write_seconds += renderer::seconds_since(begin);
   return summary;
 }
 

@@ -14,8 +14,9 @@ struct Shard {
 };
 
 struct BakeFileOptions {
-  Shard shard;
+  Shard shard = {};
   bool resume = false;
+  bool keeps_unfinished = true;  // where it fails; when it is interrupted it always does
 };
 
 // Where a bake is until it is whole: beside the file.

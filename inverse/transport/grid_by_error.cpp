@@ -19,6 +19,12 @@ namespace {
 
 using renderer::RayTracer;
 
+// To two digits.
+double rounded_up(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / digit) * digit;
+}
+
 constexpr std::size_t kReceivers = 300, kPositions = 64;
 constexpr int kPointsPerSample = 8;
 constexpr double kFirstLights = 64;
@@ -175,7 +181,7 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
   }
   throw NoUsableGrid({tracer.scene().path, "option --grid",
                       fmt::format("{:.3g} % takes more than {} lights", 100 * options.error, kMostGridLights),
-                      fmt::format("{:.1f} % or more, or a smaller --region", 100 * least)});
+                      fmt::format("{:.2g} % or more, or a smaller --region", rounded_up(100 * least))});
 }
 
 std::vector<GridCell> whole_cells(const LightGrid& grid) {

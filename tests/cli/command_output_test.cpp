@@ -192,6 +192,22 @@ TEST(CliPaint, StrokesOnATargetBeginFromItsWeights) {
   paint(R"({"strokes":[{"color":[1,1,1],"weight":2e38,)" + all + "}]}", "heavy.glb", {"--from", base});
 }
 
+TEST(CliPaint, BlackTargetsArePaintedOnAndCompared) {
+  const TemporaryFolder folder;
+  const std::string scene = kScenes + "cornell.glb", black = folder / "black.glb", lit = folder / "lit.glb";
+  const auto strokes = [&](const std::string& list) {
+    return folder.write("s.json", R"({"base":"black","strokes":[)" + list + "]}").string();
+  };
+  ASSERT_EQ(run_with({"paint", scene, "--strokes", strokes(""), "--max-edge", "1", "-o", black}).exit_code, kDone);
+  const std::string dab = strokes(R"({"color":[1,1,1],"radius":9,"path":[[0,0,0]]})");
+  const Outcome painted = run_with({"paint", scene, "--strokes", dab, "--from", black, "-o", lit});
+  EXPECT_EQ(painted.exit_code, kDone) << painted.standard_error;
+  EXPECT_TRUE(inverse::wants_light(inverse::load_illumination(lit)));
+  const Outcome same = run_with({"compare", black, black, "--json"});
+  EXPECT_EQ(same.exit_code, kDone) << same.standard_error;
+  EXPECT_NE(same.standard_output.find("\"relative_l2\": 0"), std::string::npos) << same.standard_output;
+}
+
 TEST(CliPaint, PicturesThatCannotBeAreFoundBeforeThePainting) {
   const TemporaryFolder folder;
   const std::string strokes =

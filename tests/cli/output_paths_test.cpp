@@ -1,5 +1,6 @@
 #include "cli/output_paths.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include "cli/session.h"
 #include "cli/usage_error.h"
 #include "renderer/core/error.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::cli {
@@ -98,6 +100,13 @@ TEST_F(CliOutputPaths, WhatCannotBeReplacedIsAnError) {
   Session session(CommonOptions{.threads = 0, .seed = 0, .json = false, .quiet = true});
   EXPECT_THROW(session.require_outputs_in(folder_.path(), {"new.exr", "theirs.exr"}), renderer::Error);
   ASSERT_EQ(::seteuid(0), 0);
+}
+
+TEST_F(CliOutputPaths, PipesAndSocketsAreNotReplaced) {
+  const std::filesystem::path pipe = folder_ / "pipe.exr";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_NE(test::error_of([&] { require_writable(pipe); }).find("it is a pipe, a socket or a device"),
+            std::string::npos);
 }
 
 TEST_F(CliOutputPaths, InputsAreWhatLinksLeadTo) {

@@ -127,6 +127,18 @@ TEST(Target, EmptyTargetsAreErrors) {
   expect_error({{"a", {{"_ILLUMINATION", {0, 0, 0, 0, 0, 0, 7, 8, 9}}, {"_WEIGHT", {1, 1, 0}}}}}, "an empty target");
 }
 
+TEST(Target, WantsLightWhereItIsWeighedAndBrightEnough) {
+  const auto wants = [](float weight, float bright) {
+    Target target;
+    target.weight = {1, weight};
+    target.illumination = {{}, {0, bright, 0}};
+    return wants_light(target);
+  };
+  EXPECT_TRUE(wants(1, kDimmest));
+  EXPECT_FALSE(wants(1, kDimmest / 2));
+  EXPECT_FALSE(wants(0, 1));
+}
+
 TEST(Target, ValuesThatCannotBeAreErrors) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   expect_error({{"a", {{"_ILLUMINATION", kValues}, {"_WEIGHT", {1, -1, 1}}}}}, "_WEIGHT");

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/core/error.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::renderer {
@@ -149,6 +150,14 @@ TEST_F(AtomicFile, ReadingWhatIsNoFileIsAnErrorThatNamesIt) {
       EXPECT_EQ(error.parts().file, path.string());
     }
   }
+}
+
+// Of zeros that take no room on the disk, as a transfer that has broken off may leave them.
+TEST_F(AtomicFile, MoreThanAGlbMayHaveIsNotRead) {
+  const fs::path path = folder_ / "large.glb";
+  std::ofstream(path).put('{');
+  fs::resize_file(path, (std::uintmax_t{1} << 32) + 1);
+  EXPECT_NE(test::error_of([&] { read_file(path); }).find("too large"), std::string::npos);
 }
 
 }  // namespace
