@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -67,9 +68,12 @@ bool has_its_size(std::istream& stream, const std::string& type, std::uint32_t s
 }
 
 struct Header {
-  std::optional<bool> tiled{};       // or in lines, whatever it says of tiles; absent: its type is not given
-  std::uint64_t line = 0, tile = 0;  // pixels
-  std::uint64_t lines = 16;          // that are compressed together; where it is not said, as by ZIP
+  std::optional<bool> tiled{};  // or in lines, whatever it says of tiles; absent: its type is not given
+  std::uint64_t width = 0, height = 0, tile_width = 0, tile_height = 0;  // pixels
+  std::uint64_t lines = 16;  // that are compressed together; where it is not said, as by ZIP
+  std::set<std::string> names{};
+
+  std::uint64_t tile() const { return tile_width * std::min<std::uint64_t>(tile_height, kMostPixelsOfTile + 1); }
 };
 
 // By the number of a compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB; the most of what comes
@@ -89,26 +93,40 @@ void read_value(std::istream& stream, const std::string& name, std::uint32_t siz
   }
   if (name == "compression" && size >= 1) header.lines = lines_together(std::size_t(stream.get()));
   if (name == "tiles" && size >= 8) {
-    const std::uint64_t width = read_number(stream), height = read_number(stream);
-    header.tile = width * std::min<std::uint64_t>(height, kMostPixelsOfTile + 1);
+    header.tile_width = read_number(stream), header.tile_height = read_number(stream);
   }
   if (name == "dataWindow" && size >= 16) {
-    const auto left = std::int32_t(read_number(stream));
-    read_number(stream);
-    header.line = std::uint64_t(std::int64_t(std::int32_t(read_number(stream))) - left + 1);
+    std::array<std::int64_t, 4> edges{};  // left, top, right, bottom
+    for (std::int64_t& edge : edges) edge = std::int32_t(read_number(stream));
+    header.width = std::uint64_t(edges[2] - edges[0] + 1), header.height = std::uint64_t(edges[3] - edges[1] + 1);
   }
   stream.seekg(end);
 }
 
+// A file has eight bytes to say where each chunk is, and readers take as many, or more, for each.
+std::optional<std::string> more_chunks_than_fit(const Header& header, bool tiled, std::uint64_t file_size) {
+  const auto parts = [](std::uint64_t whole, std::uint64_t part) { return whole / part + (whole % part == 0 ? 0 : 1); };
+  const std::uint64_t most = file_size / sizeof(std::uint64_t);
+  if (tiled && (header.tile_width == 0 || header.tile_height == 0)) return std::nullopt;  // which readers refuse
+  const std::uint64_t down = parts(header.height, tiled ? header.tile_height : header.lines);
+  const std::uint64_t across = tiled ? parts(header.width, header.tile_width) : 1;
+  if (down <= most && across <= most && across * down <= most) return std::nullopt;
+  return fmt::format("is cut short, or its header is corrupt: {} x {} {} in {} bytes", across, down,
+                     tiled ? "tiles" : "blocks of lines", file_size);
+}
+
 // file_is_tiled: as the file itself says. Where that and the header differ readers may believe either.
-std::optional<std::string> oversized(const Header& header, std::optional<bool> file_is_tiled) {
+std::optional<std::string> oversized(const Header& header, std::optional<bool> file_is_tiled, std::uint64_t file_size) {
   const bool by_type = header.tiled.value_or(file_is_tiled.value_or(false)), by_file = file_is_tiled.value_or(by_type);
-  if ((by_type || by_file) && header.tile > kMostPixelsOfTile) {
-    return fmt::format("its header is corrupt: tiles of {} pixels", header.tile);
+  if ((by_type || by_file) && header.tile() > kMostPixelsOfTile) {
+    return fmt::format("its header is corrupt: tiles of {} pixels", header.tile());
   }
-  if (by_type && by_file) return std::nullopt;
-  if (header.line <= kMostPixelsOfLine && header.line * header.lines <= kMostPixelsOfLines) return std::nullopt;
-  return fmt::format("its header is corrupt: lines of {} pixels, {} at once", header.line, header.lines);
+  const bool in_lines = !by_type || !by_file;
+  if (in_lines && (header.width > kMostPixelsOfLine || header.width * header.lines > kMostPixelsOfLines)) {
+    return fmt::format("its header is corrupt: lines of {} pixels, {} at once", header.width, header.lines);
+  }
+  const auto of_tiles = by_type || by_file ? more_chunks_than_fit(header, true, file_size) : std::nullopt;
+  return of_tiles || !in_lines ? of_tiles : more_chunks_than_fit(header, false, file_size);
 }
 
 // Passes the attributes of one part; whether there were any.
@@ -119,7 +137,7 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<b
   while (true) {
     const std::optional<std::string> name = read_name(stream);
     if (name && name->empty()) {
-      damage = oversized(header, file_is_tiled);
+      damage = oversized(header, file_is_tiled, file_size);
       return any;
     }
     const std::optional<std::string> type = name ? read_name(stream) : std::nullopt;
@@ -130,6 +148,9 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<b
       damage = fmt::format("its header is corrupt: attribute \"{}\" of {} bytes", name->substr(0, 40), size);
     } else if (*name == kChromaticities && *type != kChromaticities) {
       damage = fmt::format("its header is corrupt: {} of type \"{}\"", kChromaticities, type->substr(0, 40));
+    }
+    if (!damage && !header.names.insert(*name).second) {
+      damage = fmt::format("its header is corrupt: attribute \"{}\" twice", name->substr(0, 40));
     }
     if (damage) return any;
     read_value(stream, *name, size, header);

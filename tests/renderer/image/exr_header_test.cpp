@@ -76,7 +76,7 @@ TEST(ExrHeader, TilesAndLinesBeyondAllMeasureAreRefused) {
   };
   constexpr std::uint32_t kLines = 2, kTiled = 2 | 0x200, kMultipart = 2 | 0x1000;
   const auto damage = [](std::uint32_t version, const std::string& attributes) {
-    return damage_of(header(version, attributes + '\0' + '\0')).value_or("nothing");
+    return damage_of(header(version, attributes + '\0' + '\0') + std::string(4096, 'x')).value_or("nothing");
   };
   for (const std::string& wide : {window(1U << 30), window(1U << 30) + tiles(1, 1024),
                                   window((1U << 20) - 1) + compressed(9), window((1U << 20) - 1) + compressed(77)}) {
@@ -89,8 +89,13 @@ TEST(ExrHeader, TilesAndLinesBeyondAllMeasureAreRefused) {
     EXPECT_NE(damage(kLines, typed("tiledimage") + large).find("tiles of"), std::string::npos);
     EXPECT_NE(damage(kMultipart, typed("tiledimage") + large).find("tiles of"), std::string::npos);
   }
-  EXPECT_EQ(damage(kTiled, window(1U << 30) + tiles(1, 1024)), "nothing");
-  EXPECT_EQ(damage(kMultipart, typed("tiledimage") + window(1U << 30) + tiles(1, 1024)), "nothing");
+  for (const std::uint32_t width : {1U << 8, 1U << 22}) {
+    const std::string expected =
+        width == 1U << 22 ? "nothing" : "is cut short, or its header is corrupt: 4194305 x 1 tiles in ";
+    const std::string tiled = window(1U << 30) + tiles(width, 4);
+    EXPECT_EQ(damage(kTiled, tiled).substr(0, expected.size()), expected);
+    EXPECT_EQ(damage(kMultipart, typed("tiledimage") + tiled + '\0').substr(0, expected.size()), expected);
+  }
   EXPECT_EQ(damage(kLines, window(4095) + compressed(9)), "nothing");
   EXPECT_EQ(damage(kLines, window((1U << 20) - 1) + compressed(3)), "nothing");
 }
@@ -107,6 +112,11 @@ TEST(ExrHeader, ValuesOfAnotherSizeThanTheirTypeAreRefused) {
   EXPECT_EQ(damage("chlist", channel + channel + '\0'), std::nullopt);
   EXPECT_TRUE(damage("chlist", channel + '\0' + channel + '\0').has_value());
   EXPECT_TRUE(damage("chlist", channel).has_value());
+}
+
+TEST(ExrHeader, AttributesThatComeTwiceAreRefused) {
+  EXPECT_EQ(damage_of(header(2, attribute("note", 2, "ab") + attribute("note", 2, "cd")) + '\0'),
+            "its header is corrupt: attribute \"note\" twice");
 }
 
 TEST(ExrHeader, PrimariesOfAnotherTypeAreRefused) {
