@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs every test; then, built by Clang with the sanitizers, every fuzz target for a
-# while, and all unit tests but those of whole bakes and solves, which take ten times as long with them.
+# while, and all unit tests but the longest (tests/support/long_with_sanitizers.txt).
 # PRESET=release (or debug, asan, tsan, fuzz) bash tests/run.sh runs one of them alone.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
