@@ -23,6 +23,7 @@ constexpr double kShortEdge = 1.0 / 12;        // vertices take over: edge ≤ t
 constexpr double kFarAway = 1e6;               // where the rays of a segment come from, × reach
 constexpr double kSaddle = 0.02;               // rays bend at a vertex: its angles sum to > 2π + this
 constexpr double kSame = 1e-9;                 // no improvement: distances differ by ≤ this × reach
+constexpr double kSameImage = 1e-6;            // of two vertices: their distances to it agree within this × reach
 constexpr double kOvertaken = 1e-3;            // windows end: later than this × reach, and more on long edges
 constexpr std::size_t kMostWindows = 200'000;  // and kWindowsPerCorner: beyond, vertices alone go on
 constexpr std::size_t kWindowsPerCorner = 10;
@@ -312,7 +313,13 @@ class Propagation {
     }
   }
 
-  // From both ends of a short edge to the other corners of its face, where the ray passes between them.
+  // Whether two vertices know their distances by one image.
+  bool agree(const Reached& a, const Reached& b) const {
+    return std::abs((a.distance - a.radius) - (b.distance - b.radius)) <= kSameImage * reach_;
+  }
+
+  // From both ends of a short edge to the other corners of its face, where the ray passes between them. Of two images
+  // the one that has both distances may be nearer than any way is long: what that leads to is no nearer than the ends.
   void carry_on(std::uint32_t a, std::uint32_t b) {
     const Reached &from = reached_[corner(a).vertex], &to = reached_[corner(b).vertex];
     const Vector2d edge = place(b) - place(a);
@@ -330,7 +337,9 @@ class Propagation {
       if (c == a || c == b) continue;
       const Vector2d ray = place(c) - image;
       const bool between = cross(place(a) - image, ray) <= 0 && cross(place(b) - image, ray) >= 0;
-      if (between) reach_vertex(corner(c).vertex, {from.distance - radius + ray.norm(), ray.norm(), origin});
+      const double distance = from.distance - radius + ray.norm();
+      if (!between || (distance < std::max(from.distance, to.distance) && !agree(from, to))) continue;
+      reach_vertex(corner(c).vertex, {distance, ray.norm(), origin});
     }
   }
 

@@ -1,6 +1,8 @@
 // What commands print, and under which names.
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@
 #include "renderer/trace/cryptomatte.h"
 #include "tests/cli/run_with.h"
 #include "tests/inverse/target/foreign_mesh.h"
+#include "tests/renderer/io/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chiaro::cli {
@@ -190,6 +193,51 @@ TEST(CliPaint, StrokesOnATargetBeginFromItsWeights) {
   EXPECT_TRUE(std::any_of(kept.begin(), kept.end(), between));
   EXPECT_LE(*std::max_element(kept.begin(), kept.end()), 5);
   paint(R"({"strokes":[{"color":[1,1,1],"weight":2e38,)" + all + "}]}", "heavy.glb", {"--from", base});
+}
+
+// A square of ground, 2 m wide, with blades that are stuck into it.
+std::string lawn() {
+  std::mt19937 random(1);
+  const auto between = [&](double least, double most) {
+    return least + (most - least) * double(random()) / 4294967295.0;
+  };
+  std::vector<float> positions{-1, 0, -1, 1, 0, -1, 1, 0, 1, -1, 0, 1};
+  std::vector<std::uint16_t> indices{0, 2, 1, 0, 3, 2};
+  for (std::uint16_t blade = 0; blade < 300; ++blade) {
+    const double x = between(-0.98, 0.98), z = between(-0.98, 0.98), angle = between(0, 6.28);
+    const double across = 0.02 * std::cos(angle), along = 0.02 * std::sin(angle);
+    for (const double v : {x - across, -0.01, z - along, x + across, -0.01, z + along, x, 0.2, z})
+      positions.push_back(float(v));
+    for (const int corner : {0, 1, 2}) indices.push_back(std::uint16_t(4 + 3 * blade + corner));
+  }
+  renderer::tests::GltfBuilder gltf;
+  gltf.add_node({{"mesh", gltf.add_mesh({{"POSITION", gltf.add_accessor(positions, 3, renderer::tests::kFloat)}})}});
+  gltf.primitive()["indices"] = gltf.add_accessor(indices, 1, renderer::tests::kUnsignedShort);
+  return gltf.glb();
+}
+
+// Between furniture that stands and lies on the floor, and over a lawn of blades that are stuck into the ground: no way
+// along surfaces is shorter than the straight line, and the brush is nowhere brighter than straight through the air.
+TEST(CliPaint, SurfacesAreNoShortcuts) {
+  const TemporaryFolder folder;
+  const auto expect_no_shortcut = [&](const std::string& scene, float radius, const std::string& edge) {
+    const std::string painted = folder / "painted.glb";
+    const auto strokes = folder.write("s.json", fmt::format(R"({{"base":"black","strokes":[
+        {{"color":[1,1,1],"radius":{},"path":[[0,0,0]]}}]}})",
+                                                            radius));
+    const Outcome outcome = run_with({"paint", scene, "--strokes", strokes, "--max-edge", edge, "-o", painted});
+    ASSERT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+    const inverse::Target target = inverse::load_target(painted);
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < target.receivers.size(); ++i) {
+      const float x = std::min(1.0F, length(target.receivers.positions[i]) / radius), smooth = 1 - x * x * (3 - 2 * x);
+      lit += target.illumination[i].x > 0 ? 1 : 0;
+      ASSERT_LE(target.illumination[i].x, smooth + 0.02F) << scene << ", receiver " << i;
+    }
+    EXPECT_GT(lit, 100U);
+  };
+  expect_no_shortcut(kScenes + "bedroom.glb", 1, "0.1");
+  expect_no_shortcut(folder.write("lawn.glb", lawn()), 2, "0.05");
 }
 
 TEST(CliPaint, BlackTargetsArePaintedOnAndCompared) {
