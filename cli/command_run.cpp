@@ -171,8 +171,9 @@ void make_folders(const RunCommand& options, NewFolders& folders) {
 
 // A target file that is wanted as it is may well be that of an earlier run.
 std::vector<std::string> output_files(const RunCommand& options) {
-  std::vector<std::string> files{kLightsFile,    "lights.json", "found.glb", "cache.exr", "cache.exr.unfinished",
-                                 "summary.json", "index.html"};
+  std::vector<std::string> files{
+      kLightsFile,    "lights.json", "found.glb", "cache.exr", "cache.exr.unfinished", "cache.exr.unfinished.new",
+      "summary.json", "index.html"};
   if (!is_target_file_alone(options.choices.target)) files.emplace_back("target.glb");
   return files;
 }

@@ -74,6 +74,7 @@ double memory_left(std::optional<double> limit) {
 }
 
 void limit_memory(double bytes) {
+  bytes = 1.25 * bytes + 1e9;
   rlimit limit = {};
   if (mapped_bytes().writable > bytes || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
   if (limit.rlim_cur != RLIM_INFINITY && double(limit.rlim_cur) <= bytes) return;

@@ -13,10 +13,12 @@ namespace {
 
 constexpr double kVerificationPaths = 2e7;  // spent on the fresh evaluation, if not asked otherwise
 constexpr int kLeastVerificationSamples = 16, kMostVerificationSamples = 1024;
-constexpr double kLeastPaths = 1 << 13;  // that noise is estimated from: of too few it is not known either
-constexpr int kFirstPart = 8;            // of the samples, at most
-constexpr int kMoreOfSamples = 4;        // at least, as the noise of few is known only roughly
-constexpr std::uint64_t kParts = 100;    // purpose of the first one's seed
+// Noise is estimated from so many paths at least, as that of fewer is not known either, unless it takes more than so
+// many.
+constexpr double kLeastPaths = 1 << 13, kMostFirstPaths = 1e6;
+constexpr int kFirstPart = 8;          // of the samples, at most
+constexpr int kMoreOfSamples = 4;      // at least, as the noise of few is known only roughly
+constexpr std::uint64_t kParts = 100;  // purpose of the first one's seed
 // As the error is known without this noise, it may be …
 constexpr double kNoiseBesideTarget = 1;   // … of the target's …
 constexpr double kNoiseOfFew = 2;          // … or twice, where each light brings much of it, …
@@ -81,12 +83,13 @@ struct SquaredSums {
 double receivers_that_count(const Target& target) {
   double sum = 0, squares = 0;
   for (const float weight : target.weight) sum += double(weight), squares += double(weight) * double(weight);
-  return sum * sum / squares;
+  return squares > 0 ? sum * sum / squares : double(target.receivers.size());
 }
 
 int samples_to_begin_with(const Target& target) {
-  return int(std::clamp(kLeastPaths / receivers_that_count(target), double(kLeastVerificationSamples),
-                        double(kMostVerificationSamples)));
+  const double wanted = kLeastPaths / receivers_that_count(target);
+  const double most = kMostFirstPaths / double(target.receivers.size());
+  return int(std::clamp(std::min(wanted, most), double(kLeastVerificationSamples), double(kMostVerificationSamples)));
 }
 
 // Relative to the target.
@@ -152,7 +155,8 @@ int verification_samples(const SolveOptions& options, std::size_t receivers) {
 FreshTrace trace_first_part(const SolveProblem& problem, const renderer::Lights& lights, const SolveOptions& options,
                             const renderer::Control& control, const StageClock& clock) {
   const int all = verification_samples(options, problem.target.receivers.size());
-  const int few = std::min(all, samples_to_begin_with(problem.target));
+  const int least = clock.is_limited() ? kLeastVerificationSamples : samples_to_begin_with(problem.target);
+  const int few = std::min(all, least);
   const Tracing tracing{problem, lights, options, control};
   FreshTrace first = tracing.part(few, 0);
   // How long more would take is known now.

@@ -59,11 +59,11 @@ Vec3f mirrored(Vec3f point, const MirrorPlane& plane) {
   return point - 2 * dot(point - plane.point, plane.normal) * plane.normal;
 }
 
-SurfacePath lay_mirror_image(const ReceiverSurface& surface, const Stroke& stroke) {
+SurfacePath lay_mirror_image(const ReceiverSurface& surface, const Stroke& stroke, const renderer::Control& control) {
   if (!stroke.mirror) return {};
   std::vector<Vec3f> image;
   for (const Vec3f point : stroke.path) image.push_back(mirrored(point, *stroke.mirror));
-  return lay_on_surface(surface, image, stroke.radius);
+  return lay_on_surface(surface, image, stroke.radius, control);
 }
 
 std::vector<PathDistance> distances(const ReceiverSurface& surface, const SurfacePath& path, const Stroke& stroke,
@@ -76,8 +76,8 @@ std::vector<PathDistance> distances(const ReceiverSurface& surface, const Surfac
 }  // namespace
 
 BrushFootprint brush_footprint(const ReceiverSurface& surface, const Stroke& stroke, const renderer::Control& control) {
-  SurfacePath path = lay_on_surface(surface, stroke.path, stroke.radius);
-  SurfacePath image = lay_mirror_image(surface, stroke);
+  SurfacePath path = lay_on_surface(surface, stroke.path, stroke.radius, control);
+  SurfacePath image = lay_mirror_image(surface, stroke, control);
   path.pieces.insert(path.pieces.end(), image.pieces.begin(), image.pieces.end());
   std::vector<Sides> sides(path.pieces.size());
   BrushFootprint footprint{{}, path.far_points, std::move(image.far_points)};

@@ -231,9 +231,10 @@ bool append_section(const ReceiverSurface& surface, const SurfacePoint& a, const
 }
 
 void append_line(const ReceiverSurface& surface, const Vector3d& from, const Vector3d& to, double radius,
-                 std::vector<Piece>& out) {
+                 const renderer::Control& control, std::vector<Piece>& out) {
   const double steps = std::min(1e5, std::ceil((to - from).norm() / (kStep * radius)));
   for (double i = 1; i < steps; ++i) {
+    control.stop_if_requested();
     if (const auto found = snap(surface, from + i / steps * (to - from), radius)) {
       out.push_back({found->position, found->position});
     }
@@ -242,16 +243,18 @@ void append_line(const ReceiverSurface& surface, const Vector3d& from, const Vec
 
 }  // namespace
 
-SurfacePath lay_on_surface(const ReceiverSurface& surface, std::span<const Vec3f> points, float radius) {
+SurfacePath lay_on_surface(const ReceiverSurface& surface, std::span<const Vec3f> points, float radius,
+                           const renderer::Control& control) {
   SurfacePath path;
   std::optional<SurfacePoint> before;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    control.stop_if_requested();
     const std::optional<SurfacePoint> here = snap(surface, to_eigen(points[i]), radius);
     if (!here) path.far_points.push_back(i);
     const bool moved = before && here && (here->position - before->position).norm() > kWeld * radius;
     const bool joined = moved && append_section(surface, *before, *here, radius, path.pieces);
     if (i > 0 && !joined && (moved || !before || !here)) {
-      append_line(surface, to_eigen(points[i - 1]), to_eigen(points[i]), radius, path.pieces);
+      append_line(surface, to_eigen(points[i - 1]), to_eigen(points[i]), radius, control, path.pieces);
     }
     if (here) path.pieces.push_back({here->position, here->position});
     before = here;

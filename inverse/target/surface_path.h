@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "inverse/target/receiver_surface.h"
+#include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 
@@ -21,6 +22,8 @@ struct SurfacePath {
 // Points go to the nearest place of a surface that faces them, if it is within `radius` (metres). From one to the next
 // the path goes where the surface is cut by the plane of both and of the normals there, the shortest way. Where no such
 // way leads there, the points of the straight line between them go to the surface, where it is within the radius.
-SurfacePath lay_on_surface(const ReceiverSurface& surface, std::span<const Vec3f> points, float radius);
+// control: to be interrupted.
+SurfacePath lay_on_surface(const ReceiverSurface& surface, std::span<const Vec3f> points, float radius,
+                           const renderer::Control& control = {});
 
 }  // namespace chiaro::inverse

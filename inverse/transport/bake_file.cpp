@@ -291,17 +291,19 @@ BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptio
     throw Error({unfinished.string(), "", "is not a file", "an unfinished bake, or no --resume"});
   }
   Unfinished bake{goes_on ? renderer::FileLock(unfinished) : replace_idle_file(unfinished), nullptr};
-  if (goes_on) {
-    go_on(unfinished, header, range, start, control, bake);
-  } else {
-    std::error_code ignored;
-    fs::remove(unfinished.string() + kNew, ignored);  // of one that was killed as it went on
-    bake.writer = begin_anew(unfinished, header, range);
-  }
   BakeSummary summary;
   try {
+    if (goes_on) {
+      go_on(unfinished, header, range, start, control, bake);
+    } else {
+      std::error_code ignored;
+      fs::remove(unfinished.string() + kNew, ignored);  // of one that was killed as it went on
+      bake.writer = begin_anew(unfinished, header, range);
+    }
     summary = bake_and_write(baker, range, start, *bake.writer, control);
-  } catch (const Error&) {
+  } catch (const renderer::Interruption&) {
+    throw;
+  } catch (...) {
     std::error_code ignored;
     if (!options.keeps_unfinished) fs::remove(unfinished, ignored);
     throw;

@@ -181,7 +181,7 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
   }
   throw NoUsableGrid({tracer.scene().path, "option --grid",
                       fmt::format("{:.3g} % takes more than {} lights", 100 * options.error, kMostGridLights),
-                      fmt::format("{:.2g} % or more, or a smaller --region", rounded_up(100 * least))});
+                      fmt::format("{:.3g} % or more, or a smaller --region", rounded_up(100 * least))});
 }
 
 std::vector<GridCell> whole_cells(const LightGrid& grid) {

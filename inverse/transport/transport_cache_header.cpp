@@ -19,6 +19,7 @@ using renderer::Attributes;
 using renderer::Error;
 
 constexpr int kFormatVersion = 1;
+constexpr int kMostAlongAxis = 1'000'000;  // as --grid takes them
 constexpr int kMostSamples = 1 << 24, kMostBounces = 10000;
 constexpr double kLargestError = std::numeric_limits<float>::max();
 
@@ -88,7 +89,7 @@ class Header {
     for (int a = 0; a < 3; ++a) {
       const std::size_t comma = std::min(text.find(',', at), text.size());
       counts[a] = parse<int>(text.substr(at, comma - at), "grid_counts");
-      if (counts[a] < 1 || counts[a] > 100000)
+      if (counts[a] < 1 || counts[a] > kMostAlongAxis)
         throw Error({file_, "header", "chiaro:grid_counts is out of range", kNotACache});
       at = std::min(comma + 1, text.size());
     }
@@ -104,7 +105,9 @@ class Header {
 bool fills_region(const LightGrid& grid) {
   if (!(grid.region.diagonal() > 0)) return false;
   for (int a = 0; a < 3; ++a) {
-    const float extent = grid.region.extent()[a], tolerance = 1e-3F * grid.spacing[a];
+    const float extent = grid.region.extent()[a];
+    // Of many cells the spacing is rounded more than that.
+    const float tolerance = std::max(1e-3F * grid.spacing[a], 4 * std::numeric_limits<float>::epsilon() * extent);
     const bool spaced = std::abs(grid.spacing[a] * float(grid.counts[a]) - extent) <= tolerance;
     const bool begun = std::abs(grid.region.min[a] + 0.5F * grid.spacing[a] - grid.origin[a]) <= 1e-3F * extent;
     if (!spaced || !begun) return false;

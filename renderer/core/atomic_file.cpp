@@ -115,10 +115,8 @@ class OpenFile {
   throw Error({path.string(), "", fmt::format("cannot be read: {}", std::strerror(code)), ""});
 }
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;  // as a GLB may have
-
-[[noreturn]] void too_large(const std::filesystem::path& path) {
-  throw Error({path.string(), "", "is too large to be read as a whole", "at most 4 GiB"});
+[[noreturn]] void too_large(const std::filesystem::path& path, std::uintmax_t most) {
+  throw Error({path.string(), "", "is too large to be read as a whole", fmt::format("at most {} bytes", most)});
 }
 
 }  // namespace
@@ -178,7 +176,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
   });
 }
 
-std::string read_file(const std::filesystem::path& path) {
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) cannot_read(path, errno);
   if (S_ISDIR(status.st_mode)) throw Error({path.string(), "", "is a folder", "a file"});
@@ -187,11 +185,11 @@ std::string read_file(const std::filesystem::path& path) {
   if (file.descriptor() < 0) cannot_read(path, errno);
   constexpr std::size_t kPart = 1 << 16;  // of what does not tell its size, as pipes
   const bool sized = S_ISREG(status.st_mode) && status.st_size > 0;
-  if (sized && std::uintmax_t(status.st_size) > kMostBytes) too_large(path);
+  if (sized && std::uintmax_t(status.st_size) > most) too_large(path, most);
   std::string bytes(sized ? std::size_t(status.st_size) : kPart, '\0');
   std::size_t size = 0;
   while (size < bytes.size() || !sized) {
-    if (size == bytes.size() && size >= kMostBytes) too_large(path);
+    if (size == bytes.size() && size >= most) too_large(path, most);
     if (size == bytes.size()) bytes.resize(2 * size);
     const ssize_t count = ::read(file.descriptor(), bytes.data() + size, bytes.size() - size);
     if (count < 0) cannot_read(path, errno);

@@ -1,6 +1,7 @@
 #pragma once
 // Outputs appear whole or not at all.
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string_view>
@@ -36,8 +37,8 @@ class UnfinishedFile {
 // Removes what is being written aside. For signal handlers that end the program.
 void remove_unfinished_files();
 
-// The bytes of a file; Error where it is missing, a folder, or unreadable; Interruption where a signal came while a
-// pipe was waited for.
-std::string read_file(const std::filesystem::path& path);
+// The bytes of a file; Error where it is missing, a folder, unreadable or longer than `most`; Interruption where a signal
+// came while a pipe was waited for.
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most = std::uintmax_t{1} << 32);
 
 }  // namespace chiaro::renderer

@@ -12,7 +12,7 @@ namespace chiaro::renderer {
 
 bool is_avif(std::string_view encoded);
 
-// RGB or RGBA, as they are stored. Error, naming `file`, where it is no AVIF of one picture, is to be cropped, or has
+// RGB or RGBA, as they are stored. Error, naming `file`, where it is no AVIF with a picture, is to be cropped, or has
 // colours multiplied by alpha.
 SamplesHeader read_avif_header(std::string_view encoded, const std::string& file);
 

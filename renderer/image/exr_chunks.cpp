@@ -202,7 +202,7 @@ std::vector<ExrTilePlace> ExrChunks::find_tiles() const {
     at += sizeof tile;
     const bool is_one = tile.x >= 0 && std::size_t(tile.x) < tiles.across && tile.y >= 0 &&
                         std::size_t(tile.y) < tiles.down && tile.level_x == 0 && tile.level_y == 0;
-    if (!is_one || tile.bytes <= 0 || std::uint64_t(tile.bytes) > context_->bytes - at) break;
+    if (!is_one || tile.bytes <= 0 || at > context_->bytes || std::uint64_t(tile.bytes) > context_->bytes - at) break;
     auto is_found = found[std::size_t(tile.y) * tiles.across + std::size_t(tile.x)];
     if (is_found) break;
     is_found = true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -83,6 +84,12 @@ std::uint64_t lines_together(std::size_t compression) {
   return kLines[std::min(compression, kLines.size() - 1)];
 }
 
+// Whether readers may believe the one where there are two, and what is looked at here is the other.
+bool decides(std::string_view name) {
+  constexpr std::string_view kDecide[] = {"type", "compression", "tiles", "dataWindow", "channels", kChromaticities};
+  return std::find(std::begin(kDecide), std::end(kDecide), name) != std::end(kDecide);
+}
+
 // Values of an attribute that say how much is read at once.
 void read_value(std::istream& stream, const std::string& name, std::uint32_t size, Header& header) {
   const auto end = stream.tellg() + std::streamoff(size);
@@ -110,7 +117,7 @@ std::optional<std::string> more_chunks_than_fit(const Header& header, bool tiled
   if (tiled && (header.tile_width == 0 || header.tile_height == 0)) return std::nullopt;  // which readers refuse
   const std::uint64_t down = parts(header.height, tiled ? header.tile_height : header.lines);
   const std::uint64_t across = tiled ? parts(header.width, header.tile_width) : 1;
-  if (down <= most && across <= most && across * down <= most) return std::nullopt;
+  if (down == 0 || across <= most / down) return std::nullopt;
   return fmt::format("is cut short, or its header is corrupt: {} x {} {} in {} bytes", across, down,
                      tiled ? "tiles" : "blocks of lines", file_size);
 }
@@ -149,8 +156,8 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<b
     } else if (*name == kChromaticities && *type != kChromaticities) {
       damage = fmt::format("its header is corrupt: {} of type \"{}\"", kChromaticities, type->substr(0, 40));
     }
-    if (!damage && !header.names.insert(*name).second) {
-      damage = fmt::format("its header is corrupt: attribute \"{}\" twice", name->substr(0, 40));
+    if (!damage && !header.names.insert(*name).second && decides(*name)) {
+      damage = fmt::format("its header is corrupt: attribute \"{}\" twice", *name);
     }
     if (damage) return any;
     read_value(stream, *name, size, header);

@@ -8,7 +8,8 @@
 
 namespace chiaro::renderer {
 
-// What is wrong with it: attributes that are longer than the file, and tiles or lines beyond all measure. Absent where
+// What is wrong with it: attributes that are longer than the file or another length than their type, tiles or lines beyond
+// all measure or more than the file has room for, what decides of these twice, primaries of another type. Absent where
 // nothing is, and for other files.
 // Source: Industrial Light & Magic, OpenEXR File Layout, section "Header".
 std::optional<std::string> find_exr_header_damage(const std::filesystem::path& path);

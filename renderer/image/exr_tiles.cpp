@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <new>
 #include <utility>
 
 #include <ImathBox.h>
@@ -222,6 +223,8 @@ ExrTileWriter::ExrTileWriter(const std::filesystem::path& path, const ExrTiles& 
     file_->stream.flush();
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     fail_to_write(path, error.what());
   }
@@ -242,6 +245,8 @@ void ExrTileWriter::write(int tile_row, int first, int last, std::span<const flo
     file_->output->setFrameBuffer(
         frame_buffer(shape_, halves.data(), first, last - first, tile_row * shape_.tile_height));
     file_->output->writeTiles(left / shape_.tile_width, (right - 1) / shape_.tile_width, tile_row, tile_row);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     fail_to_write(path_, file_->stream.problem().empty() ? error.what() : file_->stream.problem());
   }
@@ -314,6 +319,8 @@ ExrTileReader::ExrTileReader(const std::filesystem::path& path) : path_(path) {
   if (const auto damage = find_exr_header_damage(path)) throw Error({path.string(), "", *damage, "a whole file"});
   try {
     file_ = std::make_unique<File>(path);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw Error({path.string(), "header", fmt::format("cannot be read: {}", error.what()), kExpected});
   }

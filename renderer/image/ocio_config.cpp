@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,21 +50,6 @@ std::vector<std::string> names_of_looks(const std::string& looks) {
     if (name.starts_with('+') || name.starts_with('-')) name = trimmed(name.substr(1));
     if (!name.empty()) names.push_back(std::move(name));
     begin = end + 1;
-  }
-  return names;
-}
-
-// Of the files that a table in the Color Transform Format refers to: <Reference path="…"/>.
-std::vector<std::string> names_of_references(const std::filesystem::path& table) {
-  constexpr std::string_view kReference = "<Reference", kPath = "path=";
-  const std::string text = read_file(table);
-  std::vector<std::string> names;
-  for (std::size_t at = text.find(kReference); at != std::string::npos; at = text.find(kReference, at + 1)) {
-    const std::string element = text.substr(at, text.find('>', at) - at);
-    const std::size_t quote = element.find(kPath);
-    if (quote == std::string::npos) continue;
-    const std::string value = element.substr(quote + kPath.size());  // with its quotes
-    if (!value.empty()) names.push_back(value.substr(1, value.find(value[0], 1) - 1));
   }
   return names;
 }
@@ -126,7 +110,7 @@ class References {
     return found->second = size;
   }
 
-  Content content_of(const Node& node) {
+  Content content_of(const Node& node) const {
     Content content;
     const char* const name = node.name.c_str();
     if (node.kind == Kind::kColorSpace) {
@@ -191,7 +175,7 @@ class References {
     }
   }
 
-  void add(const ocio::ConstTransformRcPtr& transform, Content& content) {
+  void add(const ocio::ConstTransformRcPtr& transform, Content& content) const {
     ++content.transforms;
     if (const auto group = std::dynamic_pointer_cast<const ocio::GroupTransform>(transform)) {
       for (int i = 0; i < group->getNumTransforms(); ++i) add(group->getTransform(i), content);
@@ -209,8 +193,7 @@ class References {
   }
 
   // Reading of pipes and devices does not end.
-  void check_file(const std::string& name) {
-    if (!files_.insert(name).second) return;
+  void check_file(const std::string& name) const {
     std::string location;
     try {
       location = context_->resolveFileLocation(name.c_str());
@@ -219,18 +202,17 @@ class References {
     }
     std::error_code ignored;
     const auto type = std::filesystem::status(location, ignored).type();
-    if (type == std::filesystem::file_type::regular) {
-      for (const std::string& reference : names_of_references(location)) check_file(reference);
-    } else if (type != std::filesystem::file_type::not_found && type != std::filesystem::file_type::directory) {
-      throw Error({path_.string(), fmt::format("\"{}\"", shortened(name, 100)), "is not a file", "a file"});
+    if (type == std::filesystem::file_type::not_found || type == std::filesystem::file_type::regular ||
+        type == std::filesystem::file_type::directory) {
+      return;
     }
+    throw Error({path_.string(), fmt::format("\"{}\"", shortened(name, 100)), "is not a file", "a file"});
   }
 
   ocio::ConstConfigRcPtr config_;
   ocio::ConstContextRcPtr context_;
   const std::filesystem::path& path_;
   std::map<Node, Size> sizes_;
-  std::set<std::string> files_{};  // their names, looked at
 };
 
 bool ends_name(char c) { return std::string_view(" \t\r\n,]}:").find(c) != std::string_view::npos; }

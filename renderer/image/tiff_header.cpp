@@ -15,8 +15,14 @@ constexpr std::uint64_t kBitsPerSample = 258, kPhotometricInterpretation = 262, 
 
 struct Entry {
   std::uint64_t count = 0;
-  std::uint64_t value = 0;  // where there is one, of two bytes as the tags above have
+  std::uint64_t value = 0;  // where there is one
 };
+
+// Section 2: of a whole number without sign; 0: another type.
+int bytes_of_type(std::uint64_t type) {
+  constexpr std::uint64_t kByte = 1, kShort = 3, kLong = 4, kLong8 = 16;
+  return type == kByte ? 1 : type == kShort ? 2 : type == kLong ? 4 : type == kLong8 ? 8 : 0;
+}
 
 // TIFF 6.0, section 2, and BigTIFF, whose counts and offsets have eight bytes.
 class DirectoryReader {
@@ -35,9 +41,9 @@ class DirectoryReader {
     constexpr std::uint64_t kMost = 65535;  // as many as there are tags
     for (std::uint64_t left = std::min(number(big_ ? 8 : 2), kMost); left > 0 && stream_; --left) {
       const std::uint64_t tag = number(2);
-      number(2);  // its type
-      const std::uint64_t count = number(offset_size()), value = number(2);
-      stream_.seekg(offset_size() - 2, std::ios::cur);
+      const int bytes = std::min(bytes_of_type(number(2)), offset_size());
+      const std::uint64_t count = number(offset_size()), value = number(bytes);
+      stream_.seekg(offset_size() - bytes, std::ios::cur);
       if (stream_) entries.try_emplace(tag, Entry{count, value});
     }
     return entries;
@@ -68,7 +74,7 @@ std::optional<std::string> find_tiff_header_damage(const std::filesystem::path& 
     const auto found = entries.find(tag);
     return found == entries.end() ? Entry{} : found->second;
   };
-  const Entry bits = entry(kBitsPerSample), palette = entry(kColorMap);
+  const Entry bits = entries.contains(kBitsPerSample) ? entry(kBitsPerSample) : Entry{1, 1}, palette = entry(kColorMap);
   const bool is_palette = entry(kPhotometricInterpretation).value == kPalette && bits.count == 1 && bits.value <= 16;
   if (!is_palette || palette.count == std::uint64_t{3} << bits.value) return std::nullopt;
   return fmt::format("its palette has {} numbers, not {}", palette.count, 3 << bits.value);

@@ -110,7 +110,8 @@ Camera read_camera(const GltfDocument& document, const PlacedNode& node) {
   } else {
     set_perspective(camera, source.perspective);
   }
-  const bool has_size = !camera.orthographic || (camera.half_width > 0 && camera.half_height > 0);
+  constexpr float kLeast = 1e-6F;  // m: of less, matrices of a frame's header would not be numbers
+  const bool has_size = !camera.orthographic || std::min(camera.half_width, camera.half_height) >= kLeast;
   if (!has_size || camera.far <= camera.near) {
     fail(document, fmt::format("cameras[{}]", node.camera), "sees nothing", "a size, and zfar beyond znear");
   }

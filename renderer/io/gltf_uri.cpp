@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -133,7 +134,7 @@ std::string read_uri(const std::string& uri, const UriBase& base, const std::str
     throw Error({gltf, place, fmt::format("\"{}\" is outside its folder", name),
                  "a file beside it (--allow-external lets scenes open any)"});
   }
-  return read_file(*file);
+  return read_file(*file, std::numeric_limits<std::uintmax_t>::max());
 }
 
 }  // namespace chiaro::renderer

@@ -50,7 +50,7 @@ TEST(LimitMemory, MoreCannotBeAllocated) {
   const auto allocate = [] {
     limit_memory(kAllowed);
     try {
-      const std::vector<char> much(2 * std::size_t(kAllowed));
+      const std::vector<char> much(3 * std::size_t(kAllowed));
       std::_Exit(much.empty() ? 1 : 2);
     } catch (const std::bad_alloc&) {
       std::_Exit(0);

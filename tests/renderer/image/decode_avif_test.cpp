@@ -139,6 +139,13 @@ TEST(DecodeAvif, PicturesStandAsTheyAreToBeTurnedAndMirrored) {
   EXPECT_NE(error_of([] { decode_texture(from_base64(kTurned), "t"); }).find("turned or mirrored"), std::string::npos);
 }
 
+// As older programs write them.
+TEST(DecodeAvif, BitsNeedNotBeSaidTwice) {
+  std::string bytes = from_base64(kAvif);
+  bytes.replace(bytes.find("pixi"), 4, "free");
+  EXPECT_EQ(decode_texture(bytes, "t").rgba, decode_texture(from_base64(kAvif), "t").rgba);
+}
+
 TEST(DecodeAvif, TwelveBitsAreKept) {
   const test::TemporaryFolder folder;
   const ImageFile file = load_image(folder.write("t.avif", from_base64(kWideAvif)));

@@ -114,9 +114,13 @@ TEST(ExrHeader, ValuesOfAnotherSizeThanTheirTypeAreRefused) {
   EXPECT_TRUE(damage("chlist", channel).has_value());
 }
 
-TEST(ExrHeader, AttributesThatComeTwiceAreRefused) {
-  EXPECT_EQ(damage_of(header(2, attribute("note", 2, "ab") + attribute("note", 2, "cd")) + '\0'),
-            "its header is corrupt: attribute \"note\" twice");
+TEST(ExrHeader, AttributesThatDecideOfSizesMayNotComeTwice) {
+  const auto twice = [](const std::string& name, const std::string& type, std::uint32_t size) {
+    const std::string one = name + '\0' + type + '\0' + number(size) + std::string(size, '\1');
+    return damage_of(header(2, one + one) + '\0');
+  };
+  EXPECT_EQ(twice("compression", "compression", 1), "its header is corrupt: attribute \"compression\" twice");
+  EXPECT_EQ(twice("owner", "string", 3), std::nullopt);
 }
 
 TEST(ExrHeader, PrimariesOfAnotherTypeAreRefused) {
