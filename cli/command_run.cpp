@@ -29,6 +29,7 @@ namespace {
 
 constexpr int kDefaultFrameSamples = 64;
 constexpr const char* kLightsFile = "lights.glb";
+constexpr const char* kCacheFile = "cache.exr";
 
 struct RunCommand {
   CommonOptions common;
@@ -49,7 +50,7 @@ JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const
   require_a_place(*stage.scene, grid, problem.places);
   inverse::Baker baker(*stage.tracer, target.receivers, grid, problem.bake, memory_left({}), session.control());
   const inverse::BakeSummary summary =
-      inverse::bake_to_file(baker, options.folder() / "cache.exr", {.keeps_unfinished = false}, session.control());
+      inverse::bake_to_file(baker, options.folder() / kCacheFile, {.keeps_unfinished = false}, session.control());
   return bake_summary(baker.header(), summary);
 }
 
@@ -171,9 +172,8 @@ void make_folders(const RunCommand& options, NewFolders& folders) {
 
 // A target file that is wanted as it is may well be that of an earlier run.
 std::vector<std::string> output_files(const RunCommand& options) {
-  std::vector<std::string> files{
-      kLightsFile,    "lights.json", "found.glb", "cache.exr", "cache.exr.unfinished", "cache.exr.unfinished.new",
-      "summary.json", "index.html"};
+  std::vector<std::string> files{kLightsFile, "lights.json", "found.glb", "summary.json", "index.html"};
+  for (const std::filesystem::path& file : inverse::files_of_bake(kCacheFile)) files.push_back(file.string());
   if (!is_target_file_alone(options.choices.target)) files.emplace_back("target.glb");
   return files;
 }
@@ -212,7 +212,7 @@ int run_run(RunCommand options) {
   JsonObject summary = wanted.pictures;
   if (problem.lights_in_place.empty()) {
     summary.emplace_back("bake", bake_cache(options, stage, target, problem, session));
-    problem.cache_file = options.folder() / "cache.exr";
+    problem.cache_file = options.folder() / kCacheFile;
   }
   const inverse::SolveResult result =
       inverse::solve(problem, solve_options(options.choices, options.common), session.control());

@@ -242,6 +242,16 @@ class TargetLoading {
   WantedTarget wanted_;
 };
 
+inverse::Target on_scene(inverse::Target target, const LoadedStage& stage, const std::string& file, float scale,
+                         Session& session) {
+  place_on_scene(*stage.tracer, target.receivers, file, session);
+  session.warn(target.warnings);
+  if (scale != 1 && !target.has_scaled_colors) {
+    session.warn(fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", file));
+  }
+  return target;
+}
+
 }  // namespace
 
 void add_target_options(CLI::App& command, TargetChoices& choices) {
@@ -282,20 +292,6 @@ std::vector<std::string> idle_target_options(const CLI::App& command) {
 void add_target_scale_option(CLI::App& command, float& scale) {
   add_number(command, {"--target-scale", "S", "cd/m² of a vertex colour of 1 (default 1)"}, scale, kPositive);
 }
-
-namespace {
-
-inverse::Target on_scene(inverse::Target target, const LoadedStage& stage, const std::string& file, float scale,
-                         Session& session) {
-  place_on_scene(*stage.tracer, target.receivers, file, session);
-  session.warn(target.warnings);
-  if (scale != 1 && !target.has_scaled_colors) {
-    session.warn(fmt::format("--target-scale: does nothing with {}, whose _ILLUMINATION is in cd/m²", file));
-  }
-  return target;
-}
-
-}  // namespace
 
 inverse::Target load_target_on(const LoadedStage& stage, const std::string& file, float scale, Session& session) {
   return on_scene(inverse::load_target(file, scale), stage, file, scale, session);

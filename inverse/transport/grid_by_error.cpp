@@ -19,12 +19,6 @@ namespace {
 
 using renderer::RayTracer;
 
-// To two digits.
-double rounded_up(double value) {
-  const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return std::ceil(value / digit) * digit;
-}
-
 constexpr std::size_t kReceivers = 300, kPositions = 64;
 constexpr int kPointsPerSample = 8;
 constexpr double kFirstLights = 64;
@@ -37,6 +31,12 @@ constexpr double kMostFinerLights = 1;    // over those of the nodes
 constexpr float kTouching = 0.02F;        // of a finer cell
 constexpr std::uint32_t kMostTries = 8;   // for a test position in free space
 constexpr std::uint64_t kTestSeed = 101;  // apart from those of other positions
+
+// To two digits.
+double rounded_up(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / digit) * digit;
+}
 
 // Holds grids against positions between their lights. The same operator gives both, so that its noise does not count.
 class InterpolationTest {

@@ -139,11 +139,11 @@ OpenImage open(const std::filesystem::path& path) {
   if (has_samples(first)) {
     image.encoded = read_file(path);
     image.header = read_samples_header(image.encoded, path.string());
+    if (image.format == "avif") {
+      image.spec = spec_of(image.header);
+      return image;
+    }
     image.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(image.encoded.data(), image.encoded.size());
-  }
-  if (image.format == "avif") {
-    image.spec = spec_of(image.header);
-    return image;
   }
   std::optional<std::string> damage = find_damage(image.format, image.format == "jpeg" ? read_file(path) : first);
   if (image.format == "openexr") damage = find_exr_header_damage(path);

@@ -21,7 +21,6 @@ constexpr std::string_view kScene = R"({"asset":{"version":"2.0"},"scene":0,"sce
 "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
 constexpr std::string_view kLights = R"({"lights":[{"position":[0,0,1],"intensity":[1,1,1]}]})";
 constexpr std::string_view kStrokes = R"({"strokes":[{"color":[1,1,1],"path":[[0.2,0.2,0]]}]})";
-
 constexpr std::string_view kConstraints = R"({"max_intensity":10,"one_color":true})";
 
 int run(const std::vector<std::string>& arguments) {

@@ -24,6 +24,16 @@ std::string numbers(const std::vector<std::uint32_t>& values) {
   return bytes;
 }
 
+ExrTiles square_tiles(int width, int height, int tile, std::vector<std::string> channels) {
+  return {.width = width,
+          .height = height,
+          .first_column = 0,
+          .last_column = width,
+          .tile_width = tile,
+          .tile_height = tile,
+          .channels = std::move(channels)};
+}
+
 const std::string kNothingDeflated("\x78\x9c\x03\0\0\0\0\1", 8);
 
 // With this in the place of the last chunk, which begins with these numbers and its size.
@@ -58,13 +68,7 @@ TEST(ExrChunks, LinesThatDoNotHoldAllTheirPixelsAreRefused) {
 TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
   const test::TemporaryFolder folder;
   const auto path = folder / "t.exr";
-  const ExrTiles shape{.width = 8,
-                       .height = 8,
-                       .first_column = 0,
-                       .last_column = 8,
-                       .tile_width = 4,
-                       .tile_height = 4,
-                       .channels = {"a", "b"}};
+  const ExrTiles shape = square_tiles(8, 8, 4, {"a", "b"});
   ExrTileWriter writer(path, shape, {});
   for (const int row : {0, 1}) writer.write(row, 0, 8, std::vector<float>(64, 0.5F));
   writer.close();
@@ -82,13 +86,7 @@ TEST(ExrChunks, TilesThatDoNotHoldAllTheirPixelsAreRefused) {
 
 // Four tiles of noise, which cannot be compressed, and four of nothing, which can.
 std::string write_unfinished(const std::filesystem::path& path) {
-  const ExrTiles shape{.width = 32,
-                       .height = 16,
-                       .first_column = 0,
-                       .last_column = 32,
-                       .tile_width = 8,
-                       .tile_height = 8,
-                       .channels = {"a"}};
+  const ExrTiles shape = square_tiles(32, 16, 8, {"a"});
   ExrTileWriter writer(path, shape, {});
   Sampler sampler(1, 0, 0);
   std::vector<float> noise(256);
@@ -141,13 +139,7 @@ TEST(ExrChunks, ZerosAndTilesThatComeAgainAreNoTiles) {
 // 2²⁵ of them in 500 bytes.
 TEST(ExrChunks, MoreTilesThanAFileHasRoomForAreMissing) {
   const test::TemporaryFolder folder;
-  const ExrTiles shape{.width = 4,
-                       .height = 4,
-                       .first_column = 0,
-                       .last_column = 4,
-                       .tile_width = 4,
-                       .tile_height = 4,
-                       .channels = {"a"}};
+  const ExrTiles shape = square_tiles(4, 4, 4, {"a"});
   ExrTileWriter writer(folder / "t.exr", shape, {});
   writer.write(0, 0, 4, std::vector<float>(16, 0.5F));
   writer.close();
