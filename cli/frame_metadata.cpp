@@ -7,13 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/common_options.h"
+#include "cli/text_output.h"
 
 namespace chiaro::cli {
 namespace {
 
 using renderer::Mat4f;
-
-constexpr float kDegreesPerRadian = 180 / renderer::kPi;
 
 // The camera looks along −z. glTF 2.0 specification, 3.10.3: finite and infinite perspective projection.
 Mat4f perspective(const renderer::Camera& camera, double aspect) {
@@ -69,7 +68,7 @@ Mat4f without_scale(Mat4f matrix) {
 void add_environment(renderer::Attributes& attributes, const renderer::EnvironmentLight& environment) {
   const std::string image = std::filesystem::path(environment.image).filename().string();
   if (!image.empty()) attributes.emplace_back("chiaro:environment", image);
-  attributes.emplace_back("chiaro:environment_rotation", environment.rotation * kDegreesPerRadian);
+  attributes.emplace_back("chiaro:environment_rotation", float(degrees_of(environment.rotation)));
   attributes.emplace_back("chiaro:environment_intensity", environment.intensity);
 }
 

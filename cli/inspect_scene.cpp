@@ -10,8 +10,6 @@ namespace {
 using renderer::Scene;
 using renderer::Vec3f;
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
-
 void add_count(Inspection& inspection, const std::string& name, std::size_t count) {
   inspection.add(name, count, name, fmt::format("{}", count));
 }
@@ -46,9 +44,8 @@ void add_materials(Inspection& inspection, const Scene& scene) {
 }
 
 std::string text_of_camera(const renderer::Camera& camera) {
-  const std::string lens = camera.orthographic
-                               ? fmt::format("orthographic, {:.4g} m high", 2 * camera.half_height)
-                               : fmt::format("{:.4g}° high", double(camera.vertical_fov) * kDegreesPerRadian);
+  const std::string lens = camera.orthographic ? fmt::format("orthographic, {:.4g} m high", 2 * camera.half_height)
+                                               : fmt::format("{:.4g}° high", degrees_of(camera.vertical_fov));
   return fmt::format("{}: at {} m, {}", camera.name, text_of_vector(camera.world_from_camera.column(3)), lens);
 }
 
@@ -86,21 +83,21 @@ struct LightJson {
   }
 };
 
-struct LightText {
+struct LightRow {
   std::string operator()(const renderer::PointLight& l) const {
     return fmt::format("point at {} m, {} cd", text_of_vector(l.position), text_of_vector(l.intensity));
   }
   std::string operator()(const renderer::SpotLight& l) const {
     return fmt::format("spot at {} m towards {}, {} cd, {:.3g}° to {:.3g}°", text_of_vector(l.position),
-                       text_of_vector(l.direction), text_of_vector(l.intensity),
-                       double(l.inner_cone_angle) * kDegreesPerRadian, double(l.outer_cone_angle) * kDegreesPerRadian);
+                       text_of_vector(l.direction), text_of_vector(l.intensity), degrees_of(l.inner_cone_angle),
+                       degrees_of(l.outer_cone_angle));
   }
   std::string operator()(const renderer::DirectionalLight& l) const {
     return fmt::format("directional towards {}, {} lux", text_of_vector(l.direction), text_of_vector(l.illuminance));
   }
   std::string operator()(const renderer::EnvironmentLight& l) const {
     return fmt::format("environment of {} x {} pixels, times {:.4g} cd/m², turned by {:.4g}°", l.map->width,
-                       l.map->height, l.intensity, double(l.rotation) * kDegreesPerRadian);
+                       l.map->height, l.intensity, degrees_of(l.rotation));
   }
 };
 
@@ -112,7 +109,7 @@ void add_lights(Inspection& inspection, const renderer::Lights& lights) {
   for (const renderer::Light& light : lights) {
     list.emplace_back(std::visit(LightJson{}, light));
     const std::string name = renderer::name_of(light).empty() ? "" : renderer::name_of(light) + ": ";
-    inspection.rows.emplace_back("light", name + std::visit(LightText{}, light));
+    inspection.rows.emplace_back("light", name + std::visit(LightRow{}, light));
   }
   inspection.summary.emplace_back("lights", list);
 }

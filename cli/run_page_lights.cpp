@@ -27,10 +27,9 @@ LightText text_of(const renderer::PointLight& light) {
   return {text_of_vector(light.position), "", text_of_vector(light.intensity), light.intensity};
 }
 LightText text_of(const renderer::SpotLight& light) {
-  const auto degrees = [](float radians) { return 180 / renderer::kPi * radians; };
   return {text_of_vector(light.position),
-          fmt::format("{}, cone {:.3g}° to {:.3g}°", text_of_aim(light.direction), degrees(light.inner_cone_angle),
-                      degrees(light.outer_cone_angle)),
+          fmt::format("{}, cone {:.3g}° to {:.3g}°", text_of_aim(light.direction), degrees_of(light.inner_cone_angle),
+                      degrees_of(light.outer_cone_angle)),
           text_of_vector(light.intensity), light.intensity};
 }
 LightText text_of(const renderer::DirectionalLight& light) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -45,6 +46,8 @@ std::string table(std::vector<std::vector<std::string>> rows) {
   }
   return text;
 }
+
+double degrees_of(double radians) { return radians * (180 / std::numbers::pi); }
 
 std::string text_of_vector(renderer::Vec3f v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z); }
 

@@ -18,6 +18,7 @@ std::string aligned_rows(const std::vector<TextRow>& rows);
 // Lines of cells; the first row is the heading; columns aligned to the right but the first.
 std::string table(std::vector<std::vector<std::string>> rows);
 
+double degrees_of(double radians);
 std::string text_of_vector(renderer::Vec3f v);                // "1.25 0 -3"
 std::string text_of_seconds(double seconds);                  // "0.31 s", "4 min 05 s"
 std::string text_of_percent(std::optional<double> fraction);  // "4.12 %", "not known"
