@@ -169,6 +169,10 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
                        const BakeSettings& settings, const renderer::Control& control) {
   const Box3f region = make_light_grid(tracer, {.region = options.region, .parts = options.parts}).region;
   const auto positions = test.exact(test_positions(tracer, region, options.parts, settings.seed));
+  if (positions.at.empty()) {
+    throw NoUsableGrid({tracer.scene().path, "option --grid",
+                        "no place between lights was found free to tell the error of", "X,Y,Z, or another --region"});
+  }
   double lights = kFirstLights, least = std::numeric_limits<double>::infinity();
   while (lights <= double(kMostGridLights)) {
     control.stop_if_requested();

@@ -19,7 +19,7 @@ constexpr float kDefaultInset = 0.02F;      // of the scene's extent, on every s
 constexpr float kThin = 0.1F;               // of the scene's longest side: lights stand so far before and behind it
 constexpr float kInsideFraction = 0.6F;     // of probe rays that meet back faces, inside a solid
 constexpr float kTouching = 0.02F;          // of the spacing
-constexpr float kRandomClearance = 1e-3F;   // of the region's diagonal
+constexpr float kRandomClearance = 1e-3F;   // of the region's diagonal, and at most kTouching of where it is thin
 constexpr std::uint32_t kMostTries = 1000;  // of random positions, for each
 constexpr float kFlat = 1e-6F;              // of a node's diagonal: all of it is on its surface
 constexpr int kMostHalvings = 2;            // of the spacing, where no node is free
@@ -256,7 +256,7 @@ Vec3f random_position(const Box3f& box, renderer::Sampler& sampler) {
 std::vector<Vec3f> random_light_positions(const renderer::RayTracer& tracer, const Box3f& region, std::size_t count,
                                           std::uint64_t seed) {
   const FreeSpace free_space(tracer);
-  const float clearance = kRandomClearance * region.diagonal();
+  const float clearance = std::min(kRandomClearance * region.diagonal(), kTouching * least_positive(region.extent()));
   std::vector<Vec3f> positions;
   for (std::uint32_t i = 0; positions.size() < count && i < kMostTries * count; ++i) {
     renderer::Sampler sampler(seed, 0, i);

@@ -66,6 +66,17 @@ TEST_F(GridByError, LooksOnlyWhereLightsMayStand) {
   EXPECT_GT(grid.positions.size(), 8U);
 }
 
+// The middle of the ball: its lights stand around it, and none between them.
+TEST_F(GridByError, SaysWhenNoPlaceCanBeTested) {
+  const Box3f middle{{2.1F, 0.5F, 1.7F}, {2.3F, 0.7F, 1.9F}};
+  try {
+    choose_light_grid(tracer, receivers, {.region = kRegion, .parts = {middle}, .error = 0.1}, kSettings);
+    FAIL() << "a grid whose error nothing tells";
+  } catch (const renderer::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("option --grid: no place"), std::string::npos) << e.what();
+  }
+}
+
 TEST_F(GridByError, SaysWhenNoGridIsFineEnough) {
   EXPECT_THROW(lights_for(1e-5, {.samples = 4, .bounces = 0, .seed = 3, .materials = "gltf"}), renderer::Error);
 }

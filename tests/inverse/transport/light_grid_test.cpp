@@ -83,6 +83,16 @@ TEST(LightGrid, RandomPositionsAreInTheRegionAndNotInSolids) {
   EXPECT_NEAR(lower, 400 * 2.73 / 5.86, 50);
 }
 
+// A tenth of a millimetre above the floor, which is nearer than what other regions' positions keep from surfaces.
+TEST(LightGrid, RandomPositionsAreInThinRegionsBesideSurfaces) {
+  const Scene scene = test::plane_scene({0.5F, 0.5F, 0.5F});
+  const RayTracer tracer(scene);
+  const Box3f region{{1, 1e-4F, 1}, {2, 2e-4F, 2}};
+  const std::vector<Vec3f> positions = random_light_positions(tracer, region, 100, 1);
+  EXPECT_EQ(positions.size(), 100U);
+  for (const Vec3f p : positions) EXPECT_TRUE(region.contains(p));
+}
+
 TEST(LightGrid, StandsInTheMiddleOfTheRegionsCells) {
   const Scene scene = room_with_ball();
   const RayTracer tracer(scene);
