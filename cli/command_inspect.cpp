@@ -2,6 +2,8 @@
 #include <initializer_list>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/add_options.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
@@ -44,7 +46,8 @@ bool is_vertex_mesh(const std::string& bytes) {
 Inspection inspect_other_than_scene(const std::string& file) {
   if (renderer::has_extension(file, {".glb", ".gltf"})) return inspect_vertex_mesh(file);
   if (renderer::has_extension(file, {".json"})) {
-    return mentions(renderer::read_file(file), "\"strokes\"") ? inspect_strokes(file) : inspect_light_file(file);
+    const auto json = nlohmann::json::parse(renderer::read_file(file), nullptr, false);
+    return json.is_object() && json.contains("strokes") ? inspect_strokes(file) : inspect_light_file(file);
   }
   return inspect_picture(file);
 }

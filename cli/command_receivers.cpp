@@ -39,7 +39,8 @@ int run_receivers(const ReceiversCommand& options) {
   session.require_outputs({options.output});
   const renderer::LoadedScene loaded = renderer::load_gltf(options.scene, options.load, session.control());
   session.warn(loaded.warnings);
-  const inverse::Receivers receivers = inverse::make_receivers(loaded.scene, {.max_edge = options.max_edge});
+  const inverse::Receivers receivers =
+      inverse::make_receivers(loaded.scene, {.max_edge = options.max_edge}, session.control());
   session.stop_if_interrupted();
   renderer::save_vertex_mesh(inverse::mesh_from_receivers(receivers), options.output, 1);
   print_summary(session, options, receivers);

@@ -131,7 +131,7 @@ CommandRun add_render(CLI::App& command) {
   add_number(command,
              {"--time", "SECONDS",
               "Render for so long, but four samples of every pixel at least; --samples, if given, is then the most"},
-             options->frame.time_limit, kPositive);
+             options->frame.time_limit, kPositiveFloat);
   add_flag(command, "--preview", options->preview, "Write F.png beside the frame, through OpenColorIO");
   add_frame_options(command, options->frame, fmt::format("--samples, {} by default,", kUntilClean));
   add_hide_backs(command, options->transport.materials);

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
-#include <set>
+#include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -47,7 +48,7 @@ JsonObject bake_cache(const RunCommand& options, const LoadedStage& stage, const
                       const inverse::SolveProblem& problem, Session& session) {
   const inverse::LightGrid grid =
       inverse::choose_light_grid(*stage.tracer, target.receivers, problem.grid, problem.bake, session.control());
-  require_a_place(*stage.scene, grid, problem.places);
+  require_a_place(*stage.scene, grid, problem.places, session.control());
   inverse::Baker baker(*stage.tracer, target.receivers, grid, problem.bake, memory_left({}), session.control());
   const inverse::BakeSummary summary =
       inverse::bake_to_file(baker, options.folder() / kCacheFile, {.keeps_unfinished = false}, session.control());
@@ -61,12 +62,21 @@ renderer::Lights lights_of(const inverse::SolveResult& result, const inverse::So
 }
 
 // Two cameras may have one name, or names that differ in what a file name cannot hold.
-std::string unused_name(const std::string& name, std::set<std::string>& used) {
-  const std::string base = file_name_of(name);
-  std::string candidate = base;
-  for (int i = 2; !used.insert(candidate).second; ++i) candidate = fmt::format("{}-{}", base, i);
-  return candidate;
-}
+class UnusedNames {
+ public:
+  std::string unused(const std::string& name) {
+    const std::string base = file_name_of(name);
+    std::string candidate = base;
+    for (int& last = last_.try_emplace(base, 1).first->second; !used_.insert(candidate).second;) {
+      candidate = fmt::format("{}-{}", base, ++last);
+    }
+    return candidate;
+  }
+
+ private:
+  std::unordered_set<std::string> used_;
+  std::unordered_map<std::string, int> last_;  // number given to a name
+};
 
 struct NamedCamera {
   renderer::Camera camera;
@@ -77,9 +87,9 @@ std::vector<NamedCamera> cameras_of(const RunCommand& options, const LoadedStage
   std::vector<renderer::Camera> cameras = stage.scene->cameras;
   if (cameras.empty()) cameras = {choose_camera(*stage.scene, "", options.frame.size, session)};
   std::vector<NamedCamera> named;
-  std::set<std::string> used;
+  UnusedNames names;
   for (renderer::Camera& camera : cameras) {
-    const std::string name = unused_name(camera.name, used);
+    const std::string name = names.unused(camera.name);
     named.push_back({std::move(camera), name});
   }
   return named;

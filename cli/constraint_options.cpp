@@ -100,9 +100,13 @@ inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::Lig
           .light_distance = constraints.light_distance.value_or(0)};
 }
 
-void require_a_place(const renderer::Scene& scene, const inverse::LightGrid& grid, const inverse::PlaceRules& rules) {
+void require_a_place(const renderer::Scene& scene, const inverse::LightGrid& grid, const inverse::PlaceRules& rules,
+                     const renderer::Control& control) {
   const inverse::AllowedPlaces places(scene, grid.region, rules);
-  const auto is_near_one = [&](renderer::Vec3f light) { return places.nearest(inverse::to_eigen(light)).has_value(); };
+  const auto is_near_one = [&](renderer::Vec3f light) {
+    control.stop_if_requested();
+    return places.nearest(inverse::to_eigen(light)).has_value();
+  };
   if (std::any_of(grid.positions.begin(), grid.positions.end(), is_near_one)) return;
   throw inverse::no_place(scene, rules);
 }

@@ -32,7 +32,8 @@ void require_known_to(inverse::SolveMethod method, const inverse::LightConstrain
 inverse::PlaceRules place_rules(const renderer::Scene& scene, const inverse::LightConstraints& constraints);
 // Before the work: Error, as a solve would end with it, where no light of the grid is near a place that the rules
 // allow.
-void require_a_place(const renderer::Scene& scene, const inverse::LightGrid& grid, const inverse::PlaceRules& rules);
+void require_a_place(const renderer::Scene& scene, const inverse::LightGrid& grid, const inverse::PlaceRules& rules,
+                     const renderer::Control& control);
 
 inverse::IntensityRules intensity_rules(const inverse::LightConstraints& constraints);
 

@@ -57,7 +57,8 @@ void add_flip(const ComparedFrames& frames, double pixels_per_degree, const rend
               FrameComparison& found) {
   const renderer::ComparisonPanels& shown = found.panels;
   found.panels.flip = left_out(
-      renderer::flip(same_where_bad(shown.a, frames), same_where_bad(shown.b, frames), pixels_per_degree), frames);
+      renderer::flip(same_where_bad(shown.a, frames), same_where_bad(shown.b, frames), pixels_per_degree, control),
+      frames);
   if (!frames.scene_linear) return;
   found.hdr_flip = renderer::hdr_flip(same_where_bad(frames.a, frames), same_where_bad(frames.b, frames),
                                       pixels_per_degree, control);

@@ -129,7 +129,7 @@ void add_frame_options(CLI::App& command, FrameOptions& options, const std::stri
               "Sample until every 8 x 8 pixels' standard error is E of their mean, or of a tenth of the frame's median "
               "where that is more; " +
                   samples + " is then the most"},
-             options.noise_threshold, kPositive);
+             options.noise_threshold, kPositiveFloat);
   add_number(command,
              {"--clamp-direct", "L",
               "Most cd/m² that one ray to a light, or one that meets it, adds to a sample; biased (default: none)"},

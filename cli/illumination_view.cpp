@@ -86,6 +86,7 @@ std::optional<PictureCamera> choose_picture_camera(const IlluminationPictureOpti
   if (options.file.empty()) return std::nullopt;
   const renderer::Camera camera = choose_camera(scene, options.camera, options.size, session);
   const auto [width, height] = frame_size(camera, options.size);
+  renderer::require_room_for(width, height, options.file);
   return PictureCamera{camera, width, height};
 }
 

@@ -20,6 +20,7 @@ struct NumberRange {
 
 inline constexpr NumberRange kPositive{.min = 0, .min_excluded = true};
 inline constexpr NumberRange kNotNegative{.min = 0};
+inline constexpr NumberRange kPositiveFloat{.min = 0, .max = 1e30, .min_excluded = true};  // floats have room for it
 inline constexpr NumberRange kPercent{.min = 0, .max = 100, .min_excluded = true};
 inline constexpr NumberRange kZeroToOne{.min = 0, .max = 1};
 

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <unordered_map>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -151,11 +152,13 @@ void require_apart(const std::vector<std::filesystem::path>& inputs,
   for (const std::filesystem::path& input : inputs) {
     if (const auto* output = in_place_of(input, outputs)) refuse(*output, "is an input of this command");
   }
-  for (std::size_t k = 0; k < outputs.size(); ++k) {
-    const auto is_the_same = [&](const auto& other) { return are_same(other, outputs[k]); };
-    if (std::any_of(outputs.begin(), outputs.begin() + std::ptrdiff_t(k), is_the_same)) {
-      throw Error({outputs[k].string(), "", "is another output of this command", "a name of its own for each"});
+  std::unordered_multimap<std::string, const std::filesystem::path*> by_name;
+  for (const std::filesystem::path& output : outputs) {
+    const auto [first, last] = by_name.equal_range(output.filename().string());
+    if (std::any_of(first, last, [&](const auto& other) { return are_same(*other.second, output); })) {
+      throw Error({output.string(), "", "is another output of this command", "a name of its own for each"});
     }
+    by_name.emplace(output.filename().string(), &output);
   }
   require_apart_from_referred(inputs, outputs);
 }

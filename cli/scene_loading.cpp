@@ -56,7 +56,7 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
   stage.files = std::move(files);
   auto scene = std::make_unique<renderer::Scene>(
       renderer::with_materials(std::move(loaded.scene), material_override(materials)));
-  renderer::make_mip_maps(*scene);
+  renderer::make_mip_maps(*scene, session.control());
   stage.scene = std::move(scene);
   stage.lights = std::move(loaded.lights);
   stage.light_nodes = std::move(loaded.light_nodes);

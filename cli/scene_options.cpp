@@ -16,7 +16,7 @@ void add_scene_options(CLI::App& command, renderer::LoadOptions& options) {
            options.animation.animation);
   add_number(command,
              {"--animation-time", "SECONDS", "The scene as it is then (default: as its nodes stand, nothing animated)"},
-             options.animation.seconds);
+             options.animation.seconds, {.min = -1e30, .max = 1e30});
   command.get_option("--animation")->needs("--animation-time");
   command.add_flag_callback(
       "--allow-external", [&options] { options.external = renderer::ExternalFiles::kAnywhere; },

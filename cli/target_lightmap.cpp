@@ -12,6 +12,10 @@ namespace {
 using inverse::LightmapValues;
 
 void require_some_used(const LightmapFile& lightmap, const LightmapValues& read) {
+  if (read.counts.used > 0 && !(read.area > 0)) {
+    throw renderer::Error({lightmap.file, "", fmt::format("'{}' has no area in the scene", lightmap.node),
+                           "a node that is not scaled to nothing"});
+  }
   if (read.counts.used > 0) return;
   throw renderer::Error(
       {lightmap.file, "",

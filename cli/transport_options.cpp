@@ -78,7 +78,8 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options) {
 inverse::Receivers choose_receivers(const renderer::RayTracer& tracer, const SurfaceOptions& options,
                                     Session& session) {
   if (options.on.empty()) {
-    inverse::Receivers receivers = inverse::make_receivers(tracer.scene(), {.max_edge = options.max_edge});
+    inverse::Receivers receivers =
+        inverse::make_receivers(tracer.scene(), {.max_edge = options.max_edge}, session.control());
     inverse::place_samples_on(tracer, receivers);
     return receivers;
   }

@@ -53,14 +53,15 @@ AllowedPlaces allowed_places(const SolveProblem& problem, const LightGrid& grid)
 
 // Sections 3.4.2 and 3.4.3.
 Optimum optimize_as_published(const LightResponse& response, const Observations& observations, const LightTree& tree,
-                              const SolveOptions& options, StageClock& clock) {
+                              const SolveOptions& options, StageClock& clock, const renderer::Control& control) {
   CutOptions cut_options{options.error_threshold.value_or(kDefaultThesisThreshold), 1, options.max_lights};
   if (options.exact_lights > 0) cut_options = {0, options.exact_lights, options.exact_lights};
   const LightCutResult cut = cut_light_tree(tree, observations, cut_options);
   clock.finish("lightcut", {{"lights", double(cut.lights.size())}, {"relative_l2", cut.error}});
   if (cut.lights.empty()) return {{}, {}, Termination::kNoneReaches, {}};
-  const SimplexOptimum optimum =
-      optimize_simplex(response, observations, cut.lights, [&] { return clock.out_of_time(); });
+  const SimplexOptimum optimum = optimize_simplex(response, observations, cut.lights,
+                                                  [&] { return clock.out_of_time() || control.stop_requested(); });
+  control.stop_if_requested();
   clock.finish("nelder_mead", {{"evaluations", optimum.evaluations}, {"relative_l2", optimum.error}});
   return {optimum.lights, cut.lights,
           clock.out_of_time()                            ? Termination::kTimeLimit
@@ -258,8 +259,9 @@ bool RegionSearch::misses_less_than(const RegionSearch& other) const {
 }
 
 Optimum RegionSearch::conclude(StageClock& clock) const {
-  return is_joint(*basis) ? inverse::conclude(joint_search(), found_, clock)
-                          : optimize_as_published(response, basis->published, tree, basis->options, clock);
+  return is_joint(*basis)
+             ? inverse::conclude(joint_search(), found_, clock)
+             : optimize_as_published(response, basis->published, tree, basis->options, clock, basis->control);
 }
 
 double RegionSearch::exact_error(LightEstimates lights) const {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "inverse/numerics/median.h"
 #include "renderer/core/error.h"
 #include "renderer/core/seconds_since.h"
 
@@ -27,6 +28,20 @@ constexpr double kBytesPerEntry = 64;  // of a block, with what its writing take
 constexpr std::size_t kLeastRecords = 64, kMostRecords = 4096, kLeastLights = 64;
 constexpr double kMostRays = 16;  // of a record, over those asked for per receiver
 
+// Metres across the rooms that lights stand in, however large the ground outside is: about a diagonal.
+float size_around(const RayTracer& tracer, const LightGrid& grid) {
+  constexpr std::size_t kLights = 256;
+  constexpr float kDiagonal = 3.5F;  // over the mean distance of walls
+  const FreeSpace space(tracer);
+  std::vector<double> distances;
+  for (const std::size_t light : evenly_spread(grid.positions.size(), kLights)) {
+    const double distance = space.mean_distance(grid.positions[light]);
+    if (std::isfinite(distance)) distances.push_back(distance);
+  }
+  const float scene = tracer.bounds().diagonal();
+  return distances.empty() ? scene : std::min(scene, kDiagonal * float(numerics::median(std::move(distances))));
+}
+
 TransportCache header_of(const RayTracer& tracer, const Receivers& receivers, const LightGrid& grid,
                          const BakeSettings& settings) {
   TransportCache header;
@@ -35,7 +50,7 @@ TransportCache header_of(const RayTracer& tracer, const Receivers& receivers, co
   header.scene_fingerprint = renderer::fingerprint(tracer.scene());
   header.receiver_fingerprint = fingerprint(receivers);
   header.settings = settings;
-  header.indirect_scale = indirect_scale_for(tracer.bounds());
+  header.indirect_scale = indirect_scale_for(size_around(tracer, grid));
   return header;
 }
 

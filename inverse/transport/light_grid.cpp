@@ -45,11 +45,13 @@ std::vector<Vec3f> probe_directions() {
 
 struct Probe {
   float back_fraction = 0;
-  float nearest = renderer::kInfinity;  // metres
+  float nearest = renderer::kInfinity, mean = renderer::kInfinity;  // distances, metres
 };
 
 Probe probe(const renderer::RayTracer& tracer, Vec3f position, const std::vector<Vec3f>& directions) {
   Probe result;
+  double sum = 0;
+  int hits = 0;
   for (const Vec3f& direction : directions) {
     const auto hit = tracer.intersect({position, direction, 0, renderer::kInfinity, 0});
     if (!hit) continue;
@@ -58,7 +60,9 @@ Probe probe(const renderer::RayTracer& tracer, Vec3f position, const std::vector
     const bool back = !material.double_sided && dot(hit->geometric_normal, direction) > 0;
     result.back_fraction += (back ? 1.0F : 0.0F) / float(directions.size());
     result.nearest = std::min(result.nearest, hit->distance);
+    sum += double(hit->distance), ++hits;
   }
+  if (hits > 0) result.mean = float(sum / hits);
   return result;
 }
 
@@ -228,6 +232,8 @@ bool FreeSpace::contains(Vec3f position, float clearance) const {
   const Probe at = probe(tracer_, position, directions_);
   return !(sides_tell_ && looks_inside(at)) && at.nearest >= clearance;
 }
+
+float FreeSpace::mean_distance(Vec3f position) const { return probe(tracer_, position, directions_).mean; }
 
 LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
   const Box3f region = options.region.value_or(default_region(tracer));

@@ -75,6 +75,8 @@ class FreeSpace {
   explicit FreeSpace(const renderer::RayTracer& tracer);
   // No surface nearer than `clearance` (metres), as far as a few rays tell.
   bool contains(Vec3f position, float clearance) const;
+  // Mean distance of the surfaces around, metres; infinite where there are none.
+  float mean_distance(Vec3f position) const;
 
  private:
   const renderer::RayTracer& tracer_;

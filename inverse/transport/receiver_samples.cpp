@@ -14,7 +14,7 @@ using renderer::Box3f;
 using renderer::SurfaceSample;
 using renderer::Triangle;
 
-constexpr float kNudge = 2e-5F;        // of the receivers' diagonal
+constexpr float kNudge = 2e-5F;        // of the part's diagonal
 constexpr float kLeastNudge = 1;       // off the face's edges, in what rounding may take a point off its face
 constexpr float kLongestNudge = 0.1F;  // of the way to the centre of the face's inscribed circle
 
@@ -24,8 +24,11 @@ Box3f bounds(std::span<const Vec3f> positions) {
   return box;
 }
 
-float part_rounding(const Receivers& r, const Receivers::Part& part) {
-  const Box3f box = bounds(std::span(r.positions).subspan(part.first_receiver, part.receiver_count));
+Box3f bounds(const Receivers& r, const Receivers::Part& part) {
+  return bounds(std::span(r.positions).subspan(part.first_receiver, part.receiver_count));
+}
+
+float part_rounding(const Box3f& box) {
   return renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
 }
 
@@ -61,8 +64,6 @@ SurfaceSample sample_of(const Receivers& r, std::size_t i, const Triangle& face,
   const Vec3f inside = inside_face(r, i, face, nudge, rounding);
   return {inside + rounding * side_of_vertex(r, i, face), r.normals[i], rounding};
 }
-
-float nudge_of(const Receivers& r) { return kNudge * bounds(r.positions).diagonal(); }
 
 // The rounding of the triangles that a point lies on, at rays that meet them straight on; 0: it lies on none.
 class RoundingOfScene {
@@ -111,11 +112,11 @@ Vec3f face_normal(const Receivers& r, const Triangle& t) {
 }
 
 void place_samples(Receivers& r) {
-  const float nudge = nudge_of(r);
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
   r.samples.resize(r.size());
   for (const Receivers::Part& part : r.parts) {
-    const float rounding = part_rounding(r, part);
+    const Box3f box = bounds(r, part);
+    const float nudge = kNudge * box.diagonal(), rounding = part_rounding(box);
     for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
       r.samples[i] = face[i] == ~0U ? SurfaceSample{r.positions[i], r.normals[i], 0}
                                     : sample_of(r, i, r.triangles[face[i]], nudge, rounding);
@@ -125,10 +126,15 @@ void place_samples(Receivers& r) {
 
 void place_samples_on(const renderer::RayTracer& tracer, Receivers& r) {
   const RoundingOfScene scene(tracer);
-  const float nudge = nudge_of(r);
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
+  std::vector<float> nudges(r.size());
+  for (const Receivers::Part& part : r.parts) {
+    std::fill_n(nudges.begin() + std::ptrdiff_t(part.first_receiver), part.receiver_count,
+                kNudge * bounds(r, part).diagonal());
+  }
   renderer::parallel_for(r.size(), [&](std::size_t i) {
     if (face[i] == ~0U) return;
+    const float nudge = nudges[i];
     const Triangle& triangle = r.triangles[face[i]];
     const Vec3f inside = inside_face(r, i, triangle, nudge, r.samples[i].stand_off);
     const Vec3f center = inscribed_circle(r, triangle).center, side = side_of_vertex(r, i, triangle);

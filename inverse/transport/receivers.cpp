@@ -70,8 +70,8 @@ void check_own_vertices(const renderer::Scene& scene) {
        fmt::format("at most {:.0f}: fewer instances or simpler meshes", kMostReceivers)});
 }
 
-std::vector<SurfaceMesh> split_all(std::vector<SurfaceMesh> meshes, float max_edge) {
-  for (SurfaceMesh& mesh : meshes) split_long_edges(mesh, max_edge);
+std::vector<SurfaceMesh> split_all(std::vector<SurfaceMesh> meshes, float max_edge, const renderer::Control& control) {
+  for (SurfaceMesh& mesh : meshes) split_long_edges(mesh, max_edge, control);
   return meshes;
 }
 
@@ -158,7 +158,8 @@ void repair_normals(Receivers& r) {
 
 }  // namespace
 
-Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options) {
+Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options,
+                         const renderer::Control& control) {
   check_own_vertices(scene);
   std::vector<SurfaceMesh> meshes;
   for (const renderer::Instance& instance : scene.instances) meshes.push_back(world_mesh(scene, instance));
@@ -168,9 +169,10 @@ Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& op
   const float max_edge = options.max_edge > 0 ? options.max_edge : default_max_edge(meshes);
   check_spacing(scene, meshes, max_edge);
   check_count(scene, meshes, max_edge);
-  meshes = split_all(std::move(meshes), max_edge);
+  meshes = split_all(std::move(meshes), max_edge, control);
   Receivers receivers;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
+    control.stop_if_requested();
     append(receivers, scene.instances[i].name, meshes[i].positions, meshes[i].normals, meshes[i].triangles);
   }
   repair_normals(receivers);

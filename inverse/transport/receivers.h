@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/core/control.h"
 #include "renderer/io/vertex_mesh_file.h"
 #include "renderer/scene/scene.h"
 #include "renderer/trace/trace_illumination.h"
@@ -36,7 +37,8 @@ struct ReceiverOptions {
 
 // Never fewer than the scene's own vertices that triangles use. Error for a scene without triangles, and before
 // memory is taken for one whose instances have more vertices than receivers may be.
-Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options);
+Receivers make_receivers(const renderer::Scene& scene, const ReceiverOptions& options,
+                         const renderer::Control& control = {});
 
 // The vertices of a mesh file, whoever wrote it.
 Receivers receivers_from_mesh(const renderer::VertexMesh& mesh);

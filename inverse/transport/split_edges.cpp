@@ -135,7 +135,7 @@ struct SplitCounter {
 
 }  // namespace
 
-void split_long_edges(SurfaceMesh& mesh, float max_edge) {
+void split_long_edges(SurfaceMesh& mesh, float max_edge, const renderer::Control& control) {
   // More than floats have binary places between the longest edge and the shortest; rounding may keep edges long for
   // ever.
   constexpr int kPasses = 64;
@@ -145,6 +145,7 @@ void split_long_edges(SurfaceMesh& mesh, float max_edge) {
     std::vector<Triangle> out;
     out.reserve(mesh.triangles.size());
     for (const Triangle& t : mesh.triangles) {
+      control.stop_if_requested();
       emit(t, {midpoints.of(t[0], t[1]), midpoints.of(t[1], t[2]), midpoints.of(t[2], t[0])}, mesh, out);
     }
     changed = out.size() != mesh.triangles.size();

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "renderer/core/control.h"
 #include "renderer/scene/scene.h"
 
 namespace chiaro::inverse {
@@ -15,7 +16,7 @@ struct SurfaceMesh {
 // Splits edges longer than max_edge (metres) at their middle until none is left that floats have a middle of. An edge
 // shared by two triangles is split for both, so that the mesh stays whole. Old vertices keep their numbers; new normals
 // are interpolated.
-void split_long_edges(SurfaceMesh& mesh, float max_edge);
+void split_long_edges(SurfaceMesh& mesh, float max_edge, const renderer::Control& control = {});
 
 // How many vertices split_long_edges would leave, up to float rounding, without making them. Counting ends soon after
 // `limit` is passed.

@@ -177,12 +177,11 @@ TransportCache header_of(const renderer::ExrTileReader& file) {
 
 }  // namespace
 
-float indirect_scale_for(const Box3f& bounds) {
-  // Light that went round a scene of diagonal d brings about 1 / d². Halves lose precision below 1/250 of that as it is
+float indirect_scale_for(float across) {
+  // Light that went round a room of diagonal d brings about 1 / d². Halves lose precision below 1/250 of that as it is
   // stored, and end beyond four million times as much, which is next to a surface that a light all but touches.
   constexpr float kTypical = 1.0F / 64;
-  const float d = bounds.diagonal();
-  return d > 0 ? std::exp2(std::floor(std::log2(kTypical * d * d))) : 1.0F;
+  return across > 0 ? std::exp2(std::floor(std::log2(kTypical * across * across))) : 1.0F;
 }
 
 void TransportBlock::resize() {

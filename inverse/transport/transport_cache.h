@@ -34,8 +34,8 @@ struct TransportCache {
   float indirect_scale = 1;            // files hold the indirect part times this, so that halves do
 };
 
-// A power of two by which what lights bring in a scene of this size fits into halves.
-float indirect_scale_for(const Box3f& scene_bounds);
+// A power of two by which what lights bring fits into halves where surfaces around them are so many metres across.
+float indirect_scale_for(float across);
 
 // The entries of some receivers under some lights, row-major by light.
 struct TransportBlock {

@@ -230,17 +230,22 @@ Image linear_of(const Image& display) {
 
 }  // namespace
 
-Image flip(const Image& a, const Image& b, double pixels_per_degree) {
-  return flip_of_linear(linear_of(a), linear_of(b), pixels_per_degree);
+Image flip(const Image& a, const Image& b, double pixels_per_degree, const Control& control) {
+  return flip_of_linear(linear_of(a), linear_of(b), pixels_per_degree, control);
 }
 
-Image flip_of_linear(const Image& a, const Image& b, double pixels_per_degree) {
+Image flip_of_linear(const Image& a, const Image& b, double pixels_per_degree, const Control& control) {
   CHIARO_CHECK(a.width == b.width && a.height == b.height && a.channel_count() == 3 && b.channel_count() == 3);
   Planes opponent_a = opponent_planes(a), opponent_b = opponent_planes(b);
+  control.stop_if_requested();
   const Features features_a = luminance_features(opponent_a[0], pixels_per_degree);
+  control.stop_if_requested();
   const Features features_b = luminance_features(opponent_b[0], pixels_per_degree);
+  control.stop_if_requested();
   opponent_a = as_seen(opponent_a, pixels_per_degree);
+  control.stop_if_requested();
   opponent_b = as_seen(opponent_b, pixels_per_degree);
+  control.stop_if_requested();
   Image error = make_image(a.width, a.height, {"FLIP"});
   for_each_pixel(error.pixels.size(), [&](std::size_t i) {
     const float color = color_difference(lab_at(opponent_a, i), lab_at(opponent_b, i));

@@ -78,7 +78,8 @@ HdrFlip hdr_flip(const Image& a, const Image& reference, double pixels_per_degre
     control.stop_if_requested();
     if (control.report) control.report("FLIP", double(i) / result.exposures);
     const double exposure = result.start + (result.stop - result.start) * i / (result.exposures - 1);
-    keep_larger(flip_of_linear(shown_at(a, exposure), shown_at(reference, exposure), pixels_per_degree), result.error);
+    keep_larger(flip_of_linear(shown_at(a, exposure), shown_at(reference, exposure), pixels_per_degree, control),
+                result.error);
   }
   return result;
 }

@@ -41,6 +41,9 @@ enum class PixelType : std::uint8_t { kUint8, kHalf, kFloat };
 
 using ChannelTypes = std::vector<PixelType>;  // of each channel
 
+// Error where files of this extension cannot have so many pixels: a JPEG has at most 65500 across and down.
+void require_room_for(int width, int height, const std::filesystem::path& path);
+
 // By the extension of `path` (.exr, .png, .tif, .jpg …), whole or not at all (atomic_file.h). EXR: ZIP compressed, and
 // channels may have types of their own.
 void save_image(const Image& image, const std::filesystem::path& path, const ChannelTypes& types,

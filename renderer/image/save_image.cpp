@@ -8,6 +8,7 @@
 
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_extension.h"
 #include "renderer/core/first_line.h"
 #include "renderer/image/image_file.h"
 
@@ -132,6 +133,16 @@ std::size_t pixels_beyond_half(const Image& image, const ChannelTypes& types) {
   return beyond;
 }
 
+// Beyond it libjpeg ends the process.
+void require_room_for(int width, int height, const std::filesystem::path& path) {
+  constexpr int kMost = 65500;
+  if (std::max(width, height) <= kMost || !has_extension(path, {".jpg", ".jpe", ".jpeg", ".jif", ".jfif", ".jfi"})) {
+    return;
+  }
+  throw Error({path.string(), "", fmt::format("{} x {} pixels do not fit into a JPEG", width, height),
+               fmt::format("at most {} across and down, or another kind of file", kMost)});
+}
+
 void save_image(const Image& image, const std::filesystem::path& path, PixelType type, const Attributes& attributes) {
   save_image(image, path, ChannelTypes(image.channel_names.size(), type), attributes);
 }
@@ -145,6 +156,7 @@ void save_image(const Image& image, const std::filesystem::path& path, const Cha
     throw Error({path.string(), "", "no image format has this extension", ".exr, .png, .tif, .jpg …"});
   }
   check_channels(image, path, *output);
+  require_room_for(image.width, image.height, path);
   CHIARO_CHECK(types.size() == image.channel_names.size());
   const OIIO::ImageSpec spec = spec_of(image, types, attributes);
   write_through_memory(image, path, spec, *output);

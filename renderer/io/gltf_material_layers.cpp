@@ -24,12 +24,15 @@ Vec3f unit_color(GltfMaterialReader& reader, const Value& extension, const std::
   return {unit_factor(reader, name, color.x), unit_factor(reader, name, color.y), unit_factor(reader, name, color.z)};
 }
 
+// What bends more is a mirror as this is, to a hundred-thousandth.
+constexpr double kMostIor = 1e6;
+
 void read_ior(GltfMaterialReader& reader, const Value& extension, MaterialLayers& layers) {
   const double ior = number_member(extension, "ior", 1.5);
   if (ior != 0 && ior < 1) {
     reader.warnings.push_back(fmt::format("{}.ior: {} is raised to 1", reader.place, ior));
   }
-  layers.ior = ior == 0 ? 0 : float(std::max(1.0, ior));
+  layers.ior = ior == 0 ? 0 : float(std::clamp(ior, 1.0, kMostIor));
 }
 
 void read_specular(GltfMaterialReader& reader, const Value& extension, MaterialLayers& layers) {

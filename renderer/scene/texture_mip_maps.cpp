@@ -41,8 +41,8 @@ class MippedTextures {
     options_[use.texture] = options;
   }
 
-  void make() {
-    parallel_for(textures_.size(), [&](std::size_t i) {
+  void make(const Control& control) {
+    parallel_for(textures_.size(), "mip maps", control, [&](std::size_t i) {
       if (options_[i]) make_mip_maps(textures_[i], *options_[i]);
     });
   }
@@ -64,14 +64,14 @@ void add_uses(MippedTextures& textures, Material& m) {
 
 }  // namespace
 
-void make_mip_maps(Scene& scene) {
+void make_mip_maps(Scene& scene, const Control& control) {
   std::vector<bool> drawn(scene.materials.size());
   for (const Mesh& mesh : scene.meshes) drawn[std::size_t(mesh.material)] = true;
   MippedTextures textures(scene.textures);
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (drawn[i]) add_uses(textures, scene.materials[i]);
   }
-  textures.make();
+  textures.make(control.without_progress());
 }
 
 }  // namespace chiaro::renderer

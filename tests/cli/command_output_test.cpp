@@ -481,6 +481,14 @@ TEST(CliCompare, QuietPrintsNothingButTheSummaryOfJson) {
   EXPECT_NE(run_with({"compare", a, b}).standard_output, "");
 }
 
+TEST(CliInspect, LightsMayBeCalledStrokes) {
+  const TemporaryFolder folder;
+  const auto file = folder.write(
+      "lights.json", R"({"lights":[{"name":"strokes","type":"point","position":[0,1,0],"intensity":[1,1,1]}]})");
+  const Outcome outcome = run_with({"inspect", file.string()});
+  EXPECT_EQ(outcome.exit_code, kDone) << outcome.standard_error;
+}
+
 TEST(CliInspect, QuietSaysByItsExitAloneWhetherAFileIsGood) {
   const Outcome good = run_with({"inspect", kScenes + "cornell.glb", "--quiet"});
   EXPECT_EQ(good.exit_code, kDone);

@@ -127,6 +127,14 @@ TEST_F(BakeFile, WritesThroughNothingThatHasItsName) {
   EXPECT_THROW(bake_as({.shard = part, .resume = true}, "baked.exr"), Error) << "it is no cache";
   EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);
   EXPECT_EQ(read_file(precious), "precious");
+  fs::create_symlink(unfinished.filename(), unfinished);
+  try {
+    bake_as({.shard = part, .resume = true}, "baked.exr");
+    FAIL() << "a link to itself";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("is not a file"), std::string::npos) << e.what();
+  }
+  fs::remove(unfinished);
   ASSERT_EQ(::mkfifo(unfinished.c_str(), 0600), 0);
   EXPECT_THROW(bake_as({.shard = part, .resume = true}, "baked.exr"), Error);
   EXPECT_EQ(read_file(bake_as({.shard = part}, "baked.exr")), expected);

@@ -285,6 +285,18 @@ TEST_F(BakedCorner, SaysWhatItIsOfAndWhatItCost) {
   EXPECT_GT(result.summary.gather_points, 0U);
 }
 
+// Files have half floats, which end: with the ground outside lights brought more than they hold, times the scale.
+TEST_F(BakedCorner, TheScaleOfFilesIsThatOfTheRoomHoweverLargeTheGround) {
+  const float alone = bake(tracer_, receivers_, grid_, settings(16, 1)).cache.indirect_scale;
+  Scene on_ground = scene_;
+  test::add_mesh(on_ground, test::rectangle({-5e4F, -0.1F, -5e4F}, {0, 0, 1e5F}, {1e5F, 0, 0}),
+                 test::lambert({0.5F, 0.5F, 0.5F}), "ground");
+  const RayTracer tracer(on_ground);
+  const float scale = bake(tracer, receivers_, grid_, settings(16, 1)).cache.indirect_scale;
+  EXPECT_GE(scale, alone / 4);
+  EXPECT_LE(scale, 64 * alone);
+}
+
 TEST_F(BakedCorner, SameEntriesForAnyNumberOfThreads) {
   std::vector<TransportCache> caches;
   for (const int threads : {1, 2}) {

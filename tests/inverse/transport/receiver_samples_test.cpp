@@ -104,6 +104,23 @@ TEST(ReceiverSamples, OfThinBoxesAreNotBehindTheNextFace) {
   }
 }
 
+// Samples stand off their faces' edges by what their own part calls for: by a millimetre light 20 cm away differs by 1
+// %.
+TEST(ReceiverSamples, AreWhereTheyWereWithAGroundFarAround) {
+  Scene table = scene_of(tilted({0, 1, 0}, 0, 0, 1));
+  Mesh ground = tilted({0, 1, 0}, 0, 0, 200);
+  for (Vec3f& p : ground.positions) p.y = -1;
+  test::add_mesh(table, ground, test::lambert({0, 0, 0}), "ground");
+  const RayTracer tracer(table);
+  Receivers receivers = make_receivers(table, {.max_edge = 2});
+  for (const bool on_scene : {false, true}) {
+    if (on_scene) place_samples_on(tracer, receivers);
+    for (std::size_t i = 0; i < receivers.parts[0].receiver_count; ++i) {
+      EXPECT_LT(length(receivers.samples[i].position - receivers.positions[i]), 1e-4F) << on_scene;
+    }
+  }
+}
+
 // Of two triangles in one place the larger rounding counts, and those beside the receivers' plane do not.
 TEST(ReceiverSamples, StandOffByTheLargestTriangleThatTheyLieOn) {
   Scene scene = scene_of(tilted({0, 1, 0}, 0, 0, 4));

@@ -75,6 +75,15 @@ void expect_same_layout(const Image& a, const Image& b) {
   for (const std::string& name : a.channel_names) ASSERT_GE(b.find_channel(name), 0) << name;
 }
 
+// libjpeg ends the process where it is asked for more.
+TEST(JpegFile, OfMorePixelsThanItHoldsIsRefused) {
+  const TemporaryFolder folder;
+  const Image wide = make_image(65501, 1, {"R", "G", "B"});
+  EXPECT_THROW(save_image(wide, folder / "wide.jpg", PixelType::kUint8), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "wide.jpg"));
+  EXPECT_NO_THROW(save_image(make_image(65500, 1, {"R", "G", "B"}), folder / "wide.jpg", PixelType::kUint8));
+}
+
 TEST(ExrFile, FloatPixelsAndAttributesComeBack) {
   const TemporaryFolder folder;
   const Image image = layered_image();

@@ -94,6 +94,12 @@ TEST(GltfMaterialLayers, WithoutThicknessGlassIsThin) {
   EXPECT_TRUE(solid({{"thicknessFactor", 0.01}}));
 }
 
+// The largest float ended rendering: inside, the light's angle to it is that of 1 / ior, of which there is no inverse.
+TEST(GltfMaterialLayers, EndlessIndicesAreThoseOfAMirror) {
+  const LoadedScene loaded = load(scene_with({{"extensions", {{"KHR_materials_ior", {{"ior", 3.4028234e38}}}}}}));
+  EXPECT_EQ(loaded.scene.materials[0].layers->ior, 1e6F);
+}
+
 TEST(GltfMaterialLayers, ValuesOutOfRangeAreClampedWithAWarning) {
   const LoadedScene loaded = load(scene_with(
       {{"extensions",
