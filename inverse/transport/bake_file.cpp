@@ -286,8 +286,8 @@ BakeSummary bake_to_file(Baker& baker, const fs::path& file, const BakeFileOptio
   const Range range = receivers_of(options.shard, header);
   const fs::path unfinished = unfinished_bake(file);
   Baker::Place start{0, range.first};
-  std::error_code unknown;  // of links that lead nowhere
-  const bool goes_on = options.resume && fs::exists(fs::symlink_status(unfinished, unknown));
+  std::error_code unknown;  // of a link that leads to itself
+  const bool goes_on = options.resume && (fs::exists(unfinished, unknown) || unknown);
   if (goes_on && !fs::is_regular_file(unfinished, unknown)) {
     throw Error({unfinished.string(), "", "is not a file", "an unfinished bake, or no --resume"});
   }

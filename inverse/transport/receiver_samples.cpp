@@ -14,9 +14,10 @@ using renderer::Box3f;
 using renderer::SurfaceSample;
 using renderer::Triangle;
 
-constexpr float kNudge = 2e-5F;        // of the part's diagonal
-constexpr float kLeastNudge = 1;       // off the face's edges, in what rounding may take a point off its face
-constexpr float kLongestNudge = 0.1F;  // of the way to the centre of the face's inscribed circle
+constexpr float kNudge = 2e-5F;         // of the part's diagonal; of all receivers' up to the next
+constexpr float kMostOfOthers = 2e-4F;  // metres, or twice the rounding of all: off what a part stands on, or against
+constexpr float kLeastNudge = 1;        // off the face's edges, in what rounding may take a point off its face
+constexpr float kLongestNudge = 0.1F;   // of the way to the centre of the face's inscribed circle
 
 Box3f bounds(std::span<const Vec3f> positions) {
   Box3f box;
@@ -28,8 +29,15 @@ Box3f bounds(const Receivers& r, const Receivers::Part& part) {
   return bounds(std::span(r.positions).subspan(part.first_receiver, part.receiver_count));
 }
 
-float part_rounding(const Box3f& box) {
+float rounding_of(const Box3f& box) {
   return renderer::surface_rounding(max_component(max(abs(box.min), abs(box.max))), box.diagonal());
+}
+
+// A small part's foot is sunk into its floor as rooms are modelled, and beside large ones it is rounded as theirs. But
+// a ground of kilometres takes nothing far from its place.
+float nudge_of(const Box3f& part, const Box3f& all) {
+  const float of_others = std::max(kMostOfOthers, 2 * rounding_of(all));
+  return std::max(kNudge * part.diagonal(), std::min(kNudge * all.diagonal(), of_others));
 }
 
 struct InscribedCircle {
@@ -113,10 +121,11 @@ Vec3f face_normal(const Receivers& r, const Triangle& t) {
 
 void place_samples(Receivers& r) {
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
+  const Box3f all = bounds(r.positions);
   r.samples.resize(r.size());
   for (const Receivers::Part& part : r.parts) {
     const Box3f box = bounds(r, part);
-    const float nudge = kNudge * box.diagonal(), rounding = part_rounding(box);
+    const float nudge = nudge_of(box, all), rounding = rounding_of(box);
     for (std::size_t i = part.first_receiver; i < part.first_receiver + part.receiver_count; ++i) {
       r.samples[i] = face[i] == ~0U ? SurfaceSample{r.positions[i], r.normals[i], 0}
                                     : sample_of(r, i, r.triangles[face[i]], nudge, rounding);
@@ -127,10 +136,11 @@ void place_samples(Receivers& r) {
 void place_samples_on(const renderer::RayTracer& tracer, Receivers& r) {
   const RoundingOfScene scene(tracer);
   const std::vector<std::uint32_t> face = largest_face_per_vertex(r);
+  const Box3f all = bounds(r.positions);
   std::vector<float> nudges(r.size());
   for (const Receivers::Part& part : r.parts) {
     std::fill_n(nudges.begin() + std::ptrdiff_t(part.first_receiver), part.receiver_count,
-                kNudge * bounds(r, part).diagonal());
+                nudge_of(bounds(r, part), all));
   }
   renderer::parallel_for(r.size(), [&](std::size_t i) {
     if (face[i] == ~0U) return;

@@ -104,8 +104,7 @@ TEST(ReceiverSamples, OfThinBoxesAreNotBehindTheNextFace) {
   }
 }
 
-// Samples stand off their faces' edges by what their own part calls for: by a millimetre light 20 cm away differs by 1
-// %.
+// Not by what the ground's size calls for: at a millimetre light 20 cm away differs by 1 %, and it was 6 mm here.
 TEST(ReceiverSamples, AreWhereTheyWereWithAGroundFarAround) {
   Scene table = scene_of(tilted({0, 1, 0}, 0, 0, 1));
   Mesh ground = tilted({0, 1, 0}, 0, 0, 200);
@@ -116,7 +115,23 @@ TEST(ReceiverSamples, AreWhereTheyWereWithAGroundFarAround) {
   for (const bool on_scene : {false, true}) {
     if (on_scene) place_samples_on(tracer, receivers);
     for (std::size_t i = 0; i < receivers.parts[0].receiver_count; ++i) {
-      EXPECT_LT(length(receivers.samples[i].position - receivers.positions[i]), 1e-4F) << on_scene;
+      EXPECT_LT(length(receivers.samples[i].position - receivers.positions[i]), 4e-4F) << on_scene;
+    }
+  }
+}
+
+// As rooms are modelled: what stands on a floor is a little below it.
+TEST(ReceiverSamples, OfSmallThingsSunkIntoTheirFloorAreAboveIt) {
+  constexpr float kSide = 0.05F;
+  for (const float sunk : {0.0F, 1e-6F, 1e-5F}) {
+    Scene scene = scene_of(tilted({0, 1, 0}, 0, 0, 6));
+    const Vec3f foot{1, -sunk, 0.5F};
+    test::add_mesh(scene, test::rectangle(foot, {0, 0, kSide}, {0, kSide, 0}), test::lambert({0, 0, 0}), "side");
+    const RayTracer tracer(scene);
+    Receivers receivers = make_receivers(scene, {.max_edge = 10});
+    place_samples_on(tracer, receivers);
+    for (std::size_t i = receivers.parts[1].first_receiver; i < receivers.size(); ++i) {
+      EXPECT_GT(receivers.samples[i].position.y, 0) << sunk;
     }
   }
 }
