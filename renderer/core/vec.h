@@ -62,6 +62,26 @@ inline Vec3f abs(Vec3f a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}
 inline bool is_finite(Vec3f a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 inline Vec3f lerp(float t, Vec3f a, Vec3f b) { return (1 - t) * a + t * b; }
 
+// Where floats would round away or overflow: differences, products and long sums of Vec3f.
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+  Vec3d() = default;
+  Vec3d(double x_value, double y_value, double z_value) : x(x_value), y(y_value), z(z_value) {}
+  explicit Vec3d(Vec3f a) : x(double(a.x)), y(double(a.y)), z(double(a.z)) {}
+  explicit operator Vec3f() const { return {float(x), float(y), float(z)}; }
+};
+
+inline Vec3d operator+(const Vec3d& a, const Vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3d operator-(const Vec3d& a, const Vec3d& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3d operator*(double s, const Vec3d& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec3d operator/(const Vec3d& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
+inline Vec3d& operator+=(Vec3d& a, const Vec3d& b) { return a = a + b; }
+inline double dot(const Vec3d& a, const Vec3d& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(const Vec3d& a) { return std::hypot(a.x, a.y, a.z); }
+
 // Relative luminance (Y) of a scene-linear Rec.709 colour.
 inline float luminance(Vec3f rec709) { return dot(rec709, {0.2126F, 0.7152F, 0.0722F}); }
 

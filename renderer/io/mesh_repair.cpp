@@ -1,7 +1,6 @@
 #include "renderer/io/mesh_repair.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -11,21 +10,15 @@
 namespace chiaro::renderer {
 namespace {
 
-using Vec3d = std::array<double, 3>;
-
-Vec3d difference(Vec3f a, Vec3f b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
-
-double length(const Vec3d& v) { return std::hypot(v[0], v[1], v[2]); }
-
 // Twice the area long. In double, so that products of floats neither round nor overflow.
 Vec3d area_vector(const std::vector<Vec3f>& positions, const Triangle& t) {
-  const Vec3d a = difference(positions[t[1]], positions[t[0]]), b = difference(positions[t[2]], positions[t[0]]);
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const Vec3d corner(positions[t[0]]);
+  return cross(Vec3d(positions[t[1]]) - corner, Vec3d(positions[t[2]]) - corner);
 }
 
 Vec3f unit(const Vec3d& v) {
   const double l = length(v);
-  return l > 0 ? Vec3f{float(v[0] / l), float(v[1] / l), float(v[2] / l)} : Vec3f{0, 1, 0};
+  return l > 0 ? Vec3f(v / l) : Vec3f{0, 1, 0};
 }
 
 std::size_t drop_degenerate_triangles(Mesh& mesh) {
@@ -159,9 +152,7 @@ std::vector<Vec3f> smooth_normals(const std::vector<Vec3f>& positions, const std
   std::vector<Vec3d> sums(positions.size(), Vec3d{});
   for (const Triangle& t : triangles) {
     const Vec3d area = area_vector(positions, t);
-    for (const std::uint32_t v : t) {
-      for (int axis = 0; axis < 3; ++axis) sums[v][axis] += area[axis];
-    }
+    for (const std::uint32_t v : t) sums[v] += area;
   }
   std::vector<Vec3f> normals(positions.size());
   std::transform(sums.begin(), sums.end(), normals.begin(), unit);

@@ -146,10 +146,11 @@ void EmissiveTriangles::add_instance(std::uint32_t index, bool instanced, std::v
       p[k] = transform_point(instance.world_from_object, mesh.positions[mesh.triangles[t][k]]);
       b.box.extend(p[k]);
     }
-    const Vec3f n = cross(p[1] - p[0], p[2] - p[0]);
-    const float area = 0.5F * length(n);
+    // In double: a lamp may be so small that floats have no square of its area, and shine all the same.
+    const Vec3d n = cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
+    const auto area = float(0.5 * length(n));
     if (!(area > 0)) continue;
-    b.axis = n / (2 * area);
+    b.axis = Vec3f(n / length(n));
     b.spread = 0;
     b.two_sided = true;
     b.intensity = area * mean_emission(scene_, mesh, t);

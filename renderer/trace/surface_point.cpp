@@ -193,6 +193,21 @@ Corners world_corners(const Locus& at, const Mat4f& world_from_object) {
   return world;
 }
 
+// Where the ray meets the triangle, clamped into it. In double, since barycentric floats may miss the place on a large
+// triangle by more than what stands on it is thick; where the ray only grazes the plane, by them all the same.
+// Source: Möller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997.
+Vec3f place_on(const Corners& corners, const Ray& ray, const Hit& hit) {
+  constexpr double kFarther = 1e-5;  // apart than the rounding of the tracer's barycentrics takes them
+  const Vec3d edge1 = Vec3d(corners[1]) - Vec3d(corners[0]), edge2 = Vec3d(corners[2]) - Vec3d(corners[0]);
+  const Vec3d direction = Vec3d(ray.direction), from_corner = Vec3d(ray.origin) - Vec3d(corners[0]);
+  const Vec3d across = cross(direction, edge2), along = cross(from_corner, edge1);
+  const double determinant = dot(edge1, across);
+  double u = dot(from_corner, across) / determinant, v = dot(direction, along) / determinant;
+  if (!(std::abs(u - hit.u) < kFarther && std::abs(v - hit.v) < kFarther)) u = hit.u, v = hit.v;
+  u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1 - u);
+  return Vec3f(Vec3d(corners[0]) + u * edge1 + v * edge2);
+}
+
 float triangle_area(const Corners& corners) {
   return 0.5F * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
 }
@@ -273,7 +288,7 @@ SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& h
   SurfacePoint point;
   const Corners corners = world_corners(at, instance.world_from_object);
   at.footprint = cone_footprint(ray, hit.distance, corners);
-  point.position = corners[0] + hit.u * (corners[1] - corners[0]) + hit.v * (corners[2] - corners[0]);
+  point.position = place_on(corners, ray, hit);
   point.rounding =
       surface_rounding(triangle_extent(corners, mesh, hit.triangle, instance.world_from_object, hit.instanced));
   point.front = dot(hit.geometric_normal, ray.direction) <= 0;

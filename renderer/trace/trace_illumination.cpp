@@ -43,8 +43,6 @@ struct Sampling {
   int batches;
 };
 
-using Vec3d = std::array<double, 3>;
-
 struct Estimate {
   Vec3f value, standard_error;
 };
@@ -54,13 +52,6 @@ void add_exact(const Sampling& sampling, const PathTracer::Receiver& at, std::ui
   if (!sampling.with_punctual) sampling.paths.add_punctual_illumination(at, sampler, light);
 }
 
-Vec3d operator+(Vec3d a, Vec3f b) {
-  for (int c = 0; c < 3; ++c) a[std::size_t(c)] += double(b[c]);
-  return a;
-}
-
-Vec3f divided(const Vec3d& sum, double by) { return {float(sum[0] / by), float(sum[1] / by), float(sum[2] / by)}; }
-
 // Of very many paths, what floats would round away.
 struct Sums {
   Vec3d all{};
@@ -68,8 +59,8 @@ struct Sums {
 
   // Moves what `light` has over.
   void take(PathLight& light) {
-    all = all + (light.direct + light.indirect);
-    for (std::size_t l = 0; l < per_light.size(); ++l) per_light[l] = per_light[l] + light.per_light[l];
+    all += Vec3d(light.direct + light.indirect);
+    for (std::size_t l = 0; l < per_light.size(); ++l) per_light[l] += Vec3d(light.per_light[l]);
     light.direct = light.indirect = {};
     std::fill(light.per_light.begin(), light.per_light.end(), Vec3f{});
   }
@@ -109,9 +100,9 @@ Estimate estimate(const Sampling& sampling, const SurfaceSample& point, std::uin
   for (int b = 0; b < batches; ++b) {
     const Sums sums = sum_of_batch(sampling, at, b, stream, per_light.size());
     const double samples = sampling.samples_of(b);
-    means[b] = divided(sums.all, samples);
+    means[b] = Vec3f(sums.all / samples);
     mean += means[b] / float(batches);
-    for (std::size_t l = 0; l < per_light.size(); ++l) per_light[l] += divided(sums.per_light[l], batches * samples);
+    for (std::size_t l = 0; l < per_light.size(); ++l) per_light[l] += Vec3f(sums.per_light[l] / (batches * samples));
   }
   Vec3f error;
   for (int c = 0; c < 3; ++c) {

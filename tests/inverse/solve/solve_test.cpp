@@ -527,12 +527,18 @@ TEST(Solve, JudgesLightsOfOneReceiverByATraceThatTheyWereNotFittedTo) {
   for (std::size_t i = 0; i < target.weight.size(); ++i) target.weight[i] = i == 7 ? 1 : 0;
   SolveOptions options = quick();
   options.verification_samples = 256;
-  const SolveResult result = solve(problem_of(corner, target, -1), options);
-  // What is left is noise. That of one receiver is so little by chance once in 125 times; lights fitted to it leave
-  // none.
-  ASSERT_TRUE(result.verification_noise);
-  EXPECT_GT(result.relative_l2, 0.01 * *result.verification_noise);
-  EXPECT_LT(result.relative_l2, 5 * *result.verification_noise);
+  // What is left is noise: its own and that of what the lights were fitted to, together about 1.4 times its own. That
+  // of one receiver is so little by chance once in 125 times; lights fitted to it leave none. In four batches a seed,
+  // chance takes it beyond the other bound once in 500 times.
+  double left = 0, noise = 0;
+  for (options.seed = 0; options.seed < 4; ++options.seed) {
+    const SolveResult result = solve(problem_of(corner, target, -1), options);
+    ASSERT_TRUE(result.verification_noise);
+    EXPECT_GT(result.relative_l2, 0.01 * *result.verification_noise);
+    left += double(result.relative_l2) * double(result.relative_l2);
+    noise += double(*result.verification_noise) * double(*result.verification_noise);
+  }
+  EXPECT_LT(std::sqrt(left), 4 * std::sqrt(noise));
 }
 
 // Half of the receivers weigh nothing, and are bright: the error is that of the others, and so is its noise, as seeds

@@ -129,6 +129,19 @@ TEST(EmissiveTriangles, PicksByPowerAndSkipsTheDark) {
   EXPECT_FALSE(emitters.empty());
 }
 
+// One candela each, however small the lamp.
+TEST(EmissiveTriangles, ShineHoweverSmallTheyAre) {
+  for (const float edge : {1e-3F, 1e-10F, 1e-12F}) {
+    Scene scene;
+    const float luminance = 1 / (edge * edge);
+    add_mesh(scene, rectangle({0, 0, 0}, {edge, 0, 0}, {0, edge, 0}),
+             lambert({0, 0, 0}, {luminance, luminance, luminance}), "lamp");
+    const auto s = EmissiveTriangles(scene).sample({0, 0, 2}, {}, 0.5, {0.3F, 0.7F});
+    ASSERT_GT(s.pdf, 0) << edge;
+    EXPECT_NEAR(s.radiance.x / s.pdf, 0.25F, 1e-4F) << edge;  // of a distance of two metres
+  }
+}
+
 TEST(EmissiveTriangles, PicksTheNearAndWhatTheSurfaceFaces) {
   Scene scene;
   add_mesh(scene, rectangle({-0.5F, 1, -0.5F}, {1, 0, 0}, {0, 0, 1}), lambert({0, 0, 0}, {1, 1, 1}), "near");

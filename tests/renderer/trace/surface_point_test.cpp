@@ -54,6 +54,19 @@ TEST(SurfacePoint, FacesTheSideThatTheRayCameFrom) {
   expect_near(below.shading_normal, {0, -1, 0}, 1e-6F);
 }
 
+// On a ground of 20 km, whose barycentric floats tell places to a millimetre.
+TEST(SurfacePoint, OfALargeTriangleIsWhereTheRayMeetsIt) {
+  constexpr float kHalf = 1e4F;
+  Scene scene;
+  add_mesh(scene, rectangle({-kHalf, 0, -kHalf}, {0, 0, 2 * kHalf}, {2 * kHalf, 0, 0}), test::lambert({1, 1, 1}), "g");
+  for (const Vec3f direction : {Vec3f{0, -1, 0}, Vec3f{3, -1, 1}, Vec3f{-1, 2, 4}}) {
+    for (int i = 0; i < 100; ++i) {
+      const Vec3f at{0.013F * float(i) - 0.7F, 0, 0.3F - 0.017F * float(i)};
+      expect_near(seen(scene, at, direction).position, at, 1e-6F);
+    }
+  }
+}
+
 TEST(SurfacePoint, VertexColoursAreBlendedAndMultiplyTheBaseColour) {
   Scene scene = square_scene(test::lambert({0.5F, 1, 1}));
   for (const Vec3f p : scene.meshes[0].positions) scene.meshes[0].colors.push_back({p.x, p.z, 3, 1});
