@@ -51,21 +51,25 @@ std::optional<std::uint32_t> fixed_size(const std::string& type) {
   return std::nullopt;
 }
 
-// A list of channels ends with an empty name: whether that is where the header says.
-bool ends_in_time(std::istream& stream, std::uint32_t size) {
-  constexpr std::streamoff kAfterName = 16;
+// Whether it ends, with an empty name, where the header says, and has pixels of whole numbers, halves or floats alone.
+bool is_list_of_channels(std::istream& stream, std::uint32_t size) {
+  constexpr std::uint32_t kPixelTypes = 3;
+  constexpr std::streamoff kAfterType = 12;
   const auto begin = stream.tellg(), end = begin + std::streamoff(size);
+  bool known = true;
   std::optional<std::string> name = read_name(stream);
-  for (; name && !name->empty() && stream.tellg() < end; name = read_name(stream))
-    stream.seekg(kAfterName, std::ios::cur);
+  for (; name && !name->empty() && stream.tellg() < end; name = read_name(stream)) {
+    known = known && read_number(stream) < kPixelTypes;
+    stream.seekg(kAfterType, std::ios::cur);
+  }
   const bool in_time = name && name->empty() && stream.tellg() == end;
   stream.clear();
   stream.seekg(begin);
-  return in_time;
+  return known && in_time;
 }
 
-bool has_its_size(std::istream& stream, const std::string& type, std::uint32_t size) {
-  return type == "chlist" ? ends_in_time(stream, size) : fixed_size(type).value_or(size) == size;
+bool is_of_its_type(std::istream& stream, const std::string& type, std::uint32_t size) {
+  return type == "chlist" ? is_list_of_channels(stream, size) : fixed_size(type).value_or(size) == size;
 }
 
 struct Header {
@@ -151,7 +155,7 @@ bool pass_header(std::istream& stream, std::uintmax_t file_size, std::optional<b
     const std::uint32_t size = read_number(stream);
     if (!type || !stream) {
       damage = "its header is cut short";
-    } else if (size > file_size - std::uintmax_t(stream.tellg()) || !has_its_size(stream, *type, size)) {
+    } else if (size > file_size - std::uintmax_t(stream.tellg()) || !is_of_its_type(stream, *type, size)) {
       damage = fmt::format("its header is corrupt: attribute \"{}\" of {} bytes", name->substr(0, 40), size);
     } else if (*name == kChromaticities && *type != kChromaticities) {
       damage = fmt::format("its header is corrupt: {} of type \"{}\"", kChromaticities, type->substr(0, 40));
