@@ -54,6 +54,9 @@ Inspection inspect_other_than_scene(const std::string& file) {
 
 Inspection inspect(const InspectCommand& options, const renderer::Control& control) {
   const std::string& file = options.file;
+  if (renderer::has_extension(file, {".glb", ".gltf", ".json"})) {
+    renderer::require_rereadable(file, "a regular file: it is read once to tell what it is");
+  }
   if (renderer::has_extension(file, {".glb", ".gltf"}) && !is_vertex_mesh(renderer::read_file(file))) {
     return inspect_scene(file, options.load, control);
   }

@@ -36,7 +36,7 @@ void require_no_brighter_than_may_be(const renderer::EnvironmentLight& light) {
   const double luminance = double(light.intensity) * double(brightest);
   if (luminance <= double(renderer::kBrightest)) return;
   throw renderer::Error(
-      {"", fmt::format("environment \"{}\"", light.name),
+      {light.image, fmt::format("environment \"{}\"", light.name),
        fmt::format("is too bright: {:g} cd/m², times an intensity of {:g}", brightest, light.intensity),
        fmt::format("at most {:g} cd/m² in all", renderer::kBrightest)});
 }

@@ -68,10 +68,7 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
 void require_copyable(const std::string& scene, const std::filesystem::path& copy) {
   std::error_code unknown;
   if (!std::filesystem::exists(scene, unknown)) return;
-  if (!std::filesystem::is_regular_file(scene, unknown)) {
-    throw renderer::Error(
-        {scene, "", "is no file that can be read twice", "a scene file: the lights found are saved in a copy of it"});
-  }
+  renderer::require_rereadable(scene, "a scene file: the lights found are saved in a copy of it");
   if (renderer::writes_gltf_text(copy)) return;
   const double gib = double(size_of_referred_files(scene)) / kGiB;
   if (gib < kMostGiBOfGlb) return;

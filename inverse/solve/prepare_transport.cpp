@@ -53,10 +53,10 @@ void require_fitting_cache(const SolveProblem& problem) {
   }
 }
 
-void require_free_space(const SolveProblem& problem) {
+void require_free_space(const SolveProblem& problem, const renderer::Control& control) {
   const bool by_parts = !problem.places.boxes.empty() || !problem.places.mounts.empty();
   if (!problem.cache_file || !by_parts) return;
-  make_light_grid(problem.tracer, around_places({}, problem.tracer.scene(), problem.places));
+  make_light_grid(problem.tracer, around_places({}, problem.tracer.scene(), problem.places), control);
 }
 
 PreparedTransport prepare_transport(const SolveProblem& problem, const std::vector<std::size_t>& chosen,

@@ -12,7 +12,7 @@ struct PreparedTransport {
 void require_fitting_cache(const SolveProblem& problem);
 
 // Error where a cache file's transport would serve a region that has no free space. Without one a bake tells.
-void require_free_space(const SolveProblem& problem);
+void require_free_space(const SolveProblem& problem, const renderer::Control& control);
 
 // From the problem's cache file, or baked for the chosen receivers alone. Error for a cache that belongs to other
 // receivers, another scene or other materials.

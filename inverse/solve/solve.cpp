@@ -344,7 +344,7 @@ SolveResult solve(const SolveProblem& problem, const SolveOptions& options, cons
     require_fitting_cache(problem);
     return fit_in_place(problem, options, control);
   }
-  require_free_space(problem);
+  require_free_space(problem, control);
 
   const std::unique_ptr<RegionSearch> searched = search(problem, options, control, clock, result);
   if (options.exact_lights == 0 && !searched->brings_closer()) none_brings_closer(problem);

@@ -149,8 +149,8 @@ double Baker::measure_indirect_error(const renderer::Control& control) {
   if (!gather_.points.empty()) {
     const IrradianceRecords records = records_of(records_, chosen);
     std::vector<LightBlock> illumination(records.receivers.size());
-    multiply(trace_rows(records.receivers, control), illumination_of_gather_points(tracer_, gather_, positions),
-             illumination);
+    multiply(trace_rows(records.receivers, control),
+             illumination_of_gather_points(tracer_, gather_, positions, control), illumination);
     for (std::size_t i = 0; i < chosen.size(); ++i) indirect[i] = interpolate(records, i, illumination);
   }
   double difference = 0, noise = 0, reference = 0;
@@ -202,7 +202,7 @@ void Baker::gather_at_records(std::size_t first, std::size_t count, std::vector<
     const std::size_t at = block * kLightBlock;
     const auto lights =
         std::span(header_.grid.positions).subspan(first + at, std::min<std::size_t>(kLightBlock, count - at));
-    of_points[block] = illumination_of_gather_points(tracer_, gather_, lights);
+    of_points[block] = illumination_of_gather_points(tracer_, gather_, lights, quiet);
   });
   const std::size_t records = needed_.receivers.size();
   for (std::size_t record = 0, part = 0; record < records; record += records_at_once_, ++part) {

@@ -155,10 +155,11 @@ DirectTerm direct_term_at_gather_point(const RayTracer& tracer, const GatherOper
 
 // The receivers' light from the gather points' direct light.
 template <class Lanes>
-std::vector<Lanes> from_gather_points(const GatherOperator& gather, const std::vector<Lanes>& direct) {
+std::vector<Lanes> from_gather_points(const GatherOperator& gather, const std::vector<Lanes>& direct,
+                                      const renderer::Control& control = {}) {
   std::vector<Lanes> result(gather.receiver_from_point.row_count());
   if (direct.empty()) return result;
-  multiply(gather.receiver_from_point, sum_of_bounces(gather.interreflection, direct, gather.bounces), result);
+  multiply(gather.receiver_from_point, sum_of_bounces(gather.interreflection, direct, gather.bounces, control), result);
   return result;
 }
 
@@ -193,9 +194,9 @@ std::vector<Lanes> direct_at_gather_points(const RayTracer& tracer, const Gather
 
 template <class Lanes>
 void append_indirect(const RayTracer& tracer, const GatherOperator& gather, std::span<const Vec3f> lights,
-                     std::vector<std::vector<Vec3f>>& all) {
+                     std::vector<std::vector<Vec3f>>& all, const renderer::Control& control) {
   const auto direct = direct_at_gather_points<Lanes>(tracer, gather, lights);
-  const std::vector<Lanes> indirect = from_gather_points(gather, direct);
+  const std::vector<Lanes> indirect = from_gather_points(gather, direct, control);
   std::vector<float> of_light(direct.size());
   for (std::size_t l = 0; l < lights.size(); ++l) {
     for (std::size_t i = 0; i < direct.size(); ++i) of_light[i] = direct[i].channel[0][l];
@@ -255,9 +256,9 @@ GatherOperator make_gather_operator(const RayTracer& tracer, std::span<const Sur
 }
 
 std::vector<LightBlock> illumination_of_gather_points(const RayTracer& tracer, const GatherOperator& gather,
-                                                      std::span<const Vec3f> lights) {
+                                                      std::span<const Vec3f> lights, const renderer::Control& control) {
   return sum_of_bounces(gather.interreflection, direct_at_gather_points<LightBlock>(tracer, gather, lights),
-                        gather.bounces);
+                        gather.bounces, control);
 }
 
 std::vector<LightBlock> indirect_illumination(const RayTracer& tracer, const GatherOperator& gather,
@@ -273,11 +274,11 @@ std::vector<std::vector<Vec3f>> indirect_illumination_by_light(const RayTracer& 
     control.stop_if_requested();
     const auto some = lights.first(lights_at_once(lights.size()));
     if (some.size() == 1) {
-      append_indirect<OneLight>(tracer, gather, some, all);
+      append_indirect<OneLight>(tracer, gather, some, all, control);
     } else if (some.size() <= LightQuad::kLanes) {
-      append_indirect<LightQuad>(tracer, gather, some, all);
+      append_indirect<LightQuad>(tracer, gather, some, all, control);
     } else {
-      append_indirect<LightBlock>(tracer, gather, some, all);
+      append_indirect<LightBlock>(tracer, gather, some, all, control);
     }
     lights = lights.subspan(some.size());
   }

@@ -68,9 +68,10 @@ GatherOperator make_gather_operator(const renderer::RayTracer& tracer,
                                     const renderer::Control& control = {});
 
 // Illumination of the gather points over all bounces, D + K_gg D + K_gg² D + …, under up to kLightBlock unity lights (1
-// cd per channel).
+// cd per channel). control: to be interrupted.
 std::vector<LightBlock> illumination_of_gather_points(const renderer::RayTracer& tracer, const GatherOperator& gather,
-                                                      std::span<const renderer::Vec3f> lights);
+                                                      std::span<const renderer::Vec3f> lights,
+                                                      const renderer::Control& control = {});
 
 // Indirect illumination of all receivers under up to kLightBlock unity lights.
 std::vector<LightBlock> indirect_illumination(const renderer::RayTracer& tracer, const GatherOperator& gather,

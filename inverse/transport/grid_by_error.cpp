@@ -167,7 +167,7 @@ std::vector<Vec3f> test_positions(const RayTracer& tracer, const Box3f& region, 
 // The coarsest regular grid of this median error.
 LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, const LightGridOptions& options,
                        const BakeSettings& settings, const renderer::Control& control) {
-  const Box3f region = make_light_grid(tracer, {.region = options.region, .parts = options.parts}).region;
+  const Box3f region = make_light_grid(tracer, {.region = options.region, .parts = options.parts}, control).region;
   const auto positions = test.exact(test_positions(tracer, region, options.parts, settings.seed));
   if (positions.at.empty()) {
     throw NoUsableGrid({tracer.scene().path, "option --grid",
@@ -176,7 +176,8 @@ LightGrid regular_grid(const RayTracer& tracer, const InterpolationTest& test, c
   double lights = kFirstLights, least = std::numeric_limits<double>::infinity();
   while (lights <= double(kMostGridLights)) {
     control.stop_if_requested();
-    LightGrid grid = make_light_grid(tracer, {.region = options.region, .parts = options.parts, .lights = lights});
+    LightGrid grid =
+        make_light_grid(tracer, {.region = options.region, .parts = options.parts, .lights = lights}, control);
     const double error = numerics::median(test.errors(grid, pointers_to(test.rows_of(grid.positions)), positions));
     if (error <= options.error) return grid;
     least = std::min(least, error);
@@ -226,7 +227,7 @@ class Refinement {
     for (int level = 1; level <= kMostLevels && !cells.empty(); ++level) {
       control.stop_if_requested();
       std::vector<GridCell> parts;
-      for (const GridCell& cell : wrong_ones(cells)) {
+      for (const GridCell& cell : wrong_ones(cells, control)) {
         const std::vector<GridCell> these = halves(grid_, cell);
         parts.insert(parts.end(), these.begin(), these.end());
         rows_of_finer_.erase({cell.level, number_of(grid_, cell)});
@@ -252,9 +253,10 @@ class Refinement {
   }
 
   // The worst of them first, as many as there may be lights.
-  std::vector<GridCell> wrong_ones(const std::vector<GridCell>& cells) {
+  std::vector<GridCell> wrong_ones(const std::vector<GridCell>& cells, const renderer::Control& control) {
     std::vector<std::optional<Vec3f>> place(cells.size());
-    renderer::parallel_for(cells.size(), [&](std::size_t c) { place[c] = test_position(cells[c]); });
+    const auto quiet = control.without_progress();
+    renderer::parallel_for(cells.size(), "", quiet, [&](std::size_t c) { place[c] = test_position(cells[c]); });
     std::vector<std::size_t> tested;
     std::vector<Vec3f> positions;
     for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -314,7 +316,7 @@ class Refinement {
 
 LightGrid choose_light_grid(const RayTracer& tracer, const Receivers& receivers, const LightGridOptions& options,
                             const BakeSettings& settings, const renderer::Control& control) {
-  if (!(options.error > 0)) return make_light_grid(tracer, options);
+  if (!(options.error > 0)) return make_light_grid(tracer, options, control);
   const InterpolationTest test(tracer, receivers, settings, control);
   LightGrid grid = regular_grid(tracer, test, options, settings, control);
   return Refinement(tracer, test, std::move(grid), options.parts, kLocalError * options.error, settings).run(control);

@@ -44,9 +44,11 @@ bool adds_anything(const std::vector<Lanes>& term, const std::vector<Lanes>& sum
 }
 
 template <class Lanes>
-std::vector<Lanes> first_terms(const SparseTransport& one_bounce, const std::vector<Lanes>& direct, int count) {
+std::vector<Lanes> first_terms(const SparseTransport& one_bounce, const std::vector<Lanes>& direct, int count,
+                               const renderer::Control& control) {
   std::vector<Lanes> sum = direct, term = direct, next(direct.size());
   for (int bounce = 1; bounce < count; ++bounce) {
+    control.stop_if_requested();
     multiply(one_bounce, term, next);
     std::swap(term, next);
     if (bounce % kBouncesAtOnce == 0 && !adds_anything(term, sum)) break;
@@ -111,11 +113,13 @@ CHIARO_DISPATCH void take_step(const StepSizes& sizes, const Points<LightQuad>& 
 void take_step(const StepSizes& sizes, const Points<OneLight>& at) { take_any_step(sizes, at); }
 
 template <class Lanes>
-std::vector<Lanes> all_bounces(const Interreflection& k, const std::vector<Lanes>& direct) {
+std::vector<Lanes> all_bounces(const Interreflection& k, const std::vector<Lanes>& direct,
+                               const renderer::Control& control) {
   constexpr std::size_t kRows = 256;
   std::vector<Lanes> x = direct, next(direct.size()), d(direct.size());
   StepSizes sizes(k);
   for (int step = steps_needed(k); step > 0; --step) {
+    control.stop_if_requested();
     sizes.advance();
     renderer::parallel_for((x.size() + kRows - 1) / kRows, [&](std::size_t chunk) {
       const std::size_t first = chunk * kRows, count = std::min(kRows, x.size() - first);
@@ -188,12 +192,16 @@ Interreflection transposed(const Interreflection& k) {
 }
 
 template <class Lanes>
-std::vector<Lanes> sum_of_bounces(const Interreflection& k, const std::vector<Lanes>& direct, int bounces) {
-  return bounces < 0 ? all_bounces(k, direct) : first_terms(k.one_bounce, direct, bounces);
+std::vector<Lanes> sum_of_bounces(const Interreflection& k, const std::vector<Lanes>& direct, int bounces,
+                                  const renderer::Control& control) {
+  return bounces < 0 ? all_bounces(k, direct, control) : first_terms(k.one_bounce, direct, bounces, control);
 }
 
-template std::vector<LightBlock> sum_of_bounces(const Interreflection&, const std::vector<LightBlock>&, int);
-template std::vector<LightQuad> sum_of_bounces(const Interreflection&, const std::vector<LightQuad>&, int);
-template std::vector<OneLight> sum_of_bounces(const Interreflection&, const std::vector<OneLight>&, int);
+template std::vector<LightBlock> sum_of_bounces(const Interreflection&, const std::vector<LightBlock>&, int,
+                                                const renderer::Control&);
+template std::vector<LightQuad> sum_of_bounces(const Interreflection&, const std::vector<LightQuad>&, int,
+                                               const renderer::Control&);
+template std::vector<OneLight> sum_of_bounces(const Interreflection&, const std::vector<OneLight>&, int,
+                                              const renderer::Control&);
 
 }  // namespace chiaro::inverse

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "inverse/transport/sparse_transport.h"
+#include "renderer/core/control.h"
 
 namespace chiaro::inverse {
 
@@ -28,9 +29,9 @@ Interreflection make_interreflection(SparseTransport one_bounce);
 Interreflection transposed(const Interreflection& interreflection);
 
 // `bounces` terms of the series, direct light the first of them; −1: all, to 1e-3 (relative L2), mostly far less.
-// Lanes: LightBlock, LightQuad or OneLight.
+// Lanes: LightBlock, LightQuad or OneLight. control: to be interrupted, as bright rooms take thousands of steps.
 template <class Lanes>
-std::vector<Lanes> sum_of_bounces(const Interreflection& interreflection, const std::vector<Lanes>& direct,
-                                  int bounces);
+std::vector<Lanes> sum_of_bounces(const Interreflection& interreflection, const std::vector<Lanes>& direct, int bounces,
+                                  const renderer::Control& control = {});
 
 }  // namespace chiaro::inverse

@@ -130,11 +130,12 @@ float least_positive(Vec3f v) {
 }
 
 // Lights at the nodes in free space that have a part of the region in so many cells around them.
-void place_lights(LightGrid& grid, const FreeSpace& free_space, const std::vector<Box3f>& parts, float cells) {
+void place_lights(LightGrid& grid, const FreeSpace& free_space, const std::vector<Box3f>& parts, float cells,
+                  const renderer::Control& control) {
   const std::size_t nodes = std::size_t(grid.counts[0]) * grid.counts[1] * grid.counts[2];
   const float touching = kTouching * least_positive(grid.spacing);
   std::vector<char> free(nodes);
-  renderer::parallel_for(nodes, [&](std::size_t i) {
+  renderer::parallel_for(nodes, "", control, [&](std::size_t i) {
     const Vec3f position = node_position(grid, i);
     free[i] = cell_touches(grid, position, parts, cells) && free_space.contains(position, touching) ? 1 : 0;
   });
@@ -147,13 +148,13 @@ void place_lights(LightGrid& grid, const FreeSpace& free_space, const std::vecto
 }
 
 LightGrid filled_grid(const Box3f& region, const std::array<int, 3>& counts, const std::vector<Box3f>& parts,
-                      const FreeSpace& free_space) {
+                      const FreeSpace& free_space, const renderer::Control& control) {
   LightGrid grid = empty_grid(region, counts);
-  place_lights(grid, free_space, parts, 1);
+  place_lights(grid, free_space, parts, 1, control);
   // Small parts beside solids: their neighbours.
   const int most = parts.empty() ? 1 : 2 * *std::max_element(counts.begin(), counts.end());
   for (int cells = 3; grid.positions.empty() && cells < 2 * most; cells *= 2) {
-    place_lights(grid, free_space, parts, float(cells));
+    place_lights(grid, free_space, parts, float(cells), control);
   }
   return grid;
 }
@@ -235,16 +236,18 @@ bool FreeSpace::contains(Vec3f position, float clearance) const {
 
 float FreeSpace::mean_distance(Vec3f position) const { return probe(tracer_, position, directions_).mean; }
 
-LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options) {
+LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options,
+                          const renderer::Control& control) {
+  const renderer::Control quiet = control.without_progress();
   const Box3f region = options.region.value_or(default_region(tracer));
   const bool is_given = options.counts[0] > 0;
   std::array<int, 3> counts = is_given ? options.counts : counts_for(region.extent(), options.lights);
   const FreeSpace free_space(tracer);
-  LightGrid grid = filled_grid(region, counts, options.parts, free_space);
+  LightGrid grid = filled_grid(region, counts, options.parts, free_space, quiet);
   // A thin region that a solid nearly fills has its free space between such nodes.
   for (int halvings = 0; grid.positions.empty() && !is_given && halvings < kMostHalvings; ++halvings) {
     counts = finer(counts, region.extent());
-    grid = filled_grid(region, counts, options.parts, free_space);
+    grid = filled_grid(region, counts, options.parts, free_space, quiet);
   }
   if (grid.positions.empty()) {
     throw NoUsableGrid({tracer.scene().path, "light grid",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "renderer/core/error.h"
+#include "renderer/core/control.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/ray_tracer.h"
 
@@ -85,8 +86,9 @@ class FreeSpace {
 };
 
 // Nodes inside solids, those that touch a surface, and those whose cells lie outside all parts, are left out. Error
-// where none is left ("no light possible").
-LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options);
+// where none is left ("no light possible"). control: to be interrupted.
+LightGrid make_light_grid(const renderer::RayTracer& tracer, const LightGridOptions& options,
+                          const renderer::Control& control = {});
 
 // Anywhere in the box, by the sampler's next three numbers.
 Vec3f random_position(const Box3f& box, renderer::Sampler& sampler);

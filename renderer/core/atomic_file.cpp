@@ -176,6 +176,13 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
   });
 }
 
+void require_rereadable(const std::filesystem::path& path, const std::string& expected) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown) || std::filesystem::is_regular_file(path, unknown)) return;
+  if (std::filesystem::is_directory(path, unknown)) throw Error({path.string(), "", "is a folder", "a file"});
+  throw Error({path.string(), "", "is no file that can be read twice", expected});
+}
+
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) cannot_read(path, errno);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace chiaro::renderer {
@@ -36,6 +37,9 @@ class UnfinishedFile {
 
 // Removes what is being written aside. For signal handlers that end the program.
 void remove_unfinished_files();
+
+// Error where it is there and gives its bytes only once, as a pipe.
+void require_rereadable(const std::filesystem::path& path, const std::string& expected);
 
 // The bytes of a file; Error where it is missing, a folder, unreadable or longer than `most`; Interruption where a signal
 // came while a pipe was waited for.

@@ -110,10 +110,13 @@ Camera read_camera(const GltfDocument& document, const PlacedNode& node) {
   } else {
     set_perspective(camera, source.perspective);
   }
-  constexpr float kLeast = 1e-6F;  // m: of less, matrices of a frame's header would not be numbers
+  // m: of less, and of planes beyond, matrices of a frame's header would not be numbers
+  constexpr float kLeast = 1e-6F, kFarthest = 4 * float(kWorldLimit);
+  if (camera.far > kFarthest && !camera.orthographic) camera.far = kInfinity;
   const bool has_size = !camera.orthographic || std::min(camera.half_width, camera.half_height) >= kLeast;
-  if (!has_size || camera.far <= camera.near) {
-    fail(document, fmt::format("cameras[{}]", node.camera), "sees nothing", "a size, and zfar beyond znear");
+  if (!has_size || camera.far <= camera.near || camera.near > kFarthest) {
+    fail(document, fmt::format("cameras[{}]", node.camera), "sees nothing",
+         "a size, znear within the world and zfar beyond it");
   }
   return camera;
 }

@@ -279,6 +279,7 @@ Lights load_lights(const std::filesystem::path& path, std::vector<std::string>& 
   const bool binary = is_glb(bytes);
   const json root = binary ? json() : parse(bytes, path.string());
   const bool gltf = binary || (root.is_object() && root.contains("asset"));
+  if (gltf) require_rereadable(path, "a regular file, or a JSON light file: glTF is read in parts");
   Lights lights = gltf ? read_gltf_lights(path, warnings) : read_json_lights(root, path.string(), config, warnings);
   if (lights.empty()) throw Error({path.string(), "lights", "there are none", "at least one light"});
   return lights;

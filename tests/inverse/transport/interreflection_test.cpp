@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include <Eigen/LU>
 
+#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 
 namespace chiaro::inverse {
@@ -96,6 +99,15 @@ TEST(Interreflection, SoManyBouncesAreTheFirstTermsOfTheSeries) {
   EXPECT_LT((lanes_of(sum_of_bounces(k, direct, 1), 0) - d).norm(), 1e-6 * d.norm());
   const Eigen::MatrixXd three = d + kk * (d + kk * d);
   EXPECT_LT((lanes_of(sum_of_bounces(k, direct, 3), 0) - three).norm(), 1e-6 * three.norm());
+}
+
+TEST(Interreflection, CanBeInterrupted) {
+  const std::atomic<bool> interrupted{true};
+  const renderer::Control control{.report = {}, .report_noise = {}, .interrupted = &interrupted};
+  const auto k = make_interreflection(SparseTransport::from_rows(random_bounces({0.7F, 0.5F, 0.3F}, true)));
+  for (const int bounces : {-1, 3}) {
+    EXPECT_THROW(sum_of_bounces(k, direct_light<LightQuad>(), bounces, control), renderer::Interruption) << bounces;
+  }
 }
 
 TEST(Interreflection, WithoutAnyItIsDirectLight) {

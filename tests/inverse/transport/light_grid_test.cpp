@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "inverse/transport/nearest_surface.h"
 #include "renderer/core/error.h"
 #include "tests/support/code_scenes.h"
@@ -130,6 +132,14 @@ TEST(LightGrid, FlatRegionsHaveOneLayer) {
   EXPECT_EQ(grid.counts[1], 1);
   EXPECT_GT(grid.counts[0], 10);
   for (const Vec3f p : grid.positions) EXPECT_EQ(p.y, 2.5F);
+}
+
+TEST(LightGrid, CanBeInterrupted) {
+  const Scene scene = room_with_ball();
+  const RayTracer tracer(scene);
+  const std::atomic<bool> interrupted{true};
+  const renderer::Control control{.report = {}, .report_noise = {}, .interrupted = &interrupted};
+  EXPECT_THROW(make_light_grid(tracer, {}, control), renderer::Interruption);
 }
 
 TEST(LightGrid, WithoutFreeSpaceIsAnError) {

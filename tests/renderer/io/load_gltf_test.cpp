@@ -346,6 +346,20 @@ TEST(GltfCameras, ScaleAndMirroringLeaveTheAxesOrthonormal) {
   EXPECT_EQ(other.name, "camera 1");
 }
 
+// A frame's header has a matrix of them, which must be numbers.
+TEST(GltfCameras, PlanesBeyondTheWorldAreNoneOrRefused) {
+  const auto with_planes = [](double near, double far) {
+    GltfBuilder gltf;
+    gltf.root["cameras"] = ordered_json::array(
+        {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", near}, {"zfar", far}}}}});
+    gltf.add_node({{"camera", 0}});
+    return load(gltf).scene.cameras[0];
+  };
+  EXPECT_EQ(with_planes(0.1, 3e38).far, kInfinity);
+  EXPECT_EQ(with_planes(0.1, 1e6).far, 1e6F);
+  EXPECT_THROW(with_planes(3e38, 3.4e38), Error);
+}
+
 TEST(GltfLights, ArePlacedByTheirNodes) {
   GltfBuilder gltf;
   gltf.root["extensionsUsed"] = {"KHR_lights_punctual"};
