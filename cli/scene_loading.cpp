@@ -66,8 +66,6 @@ LoadedStage load_stage(const std::string& path, const renderer::LoadOptions& loa
 }
 
 void require_copyable(const std::string& scene, const std::filesystem::path& copy) {
-  std::error_code unknown;
-  if (!std::filesystem::exists(scene, unknown)) return;
   renderer::require_rereadable(scene, "a scene file: the lights found are saved in a copy of it");
   if (renderer::writes_gltf_text(copy)) return;
   const double gib = double(size_of_referred_files(scene)) / kGiB;

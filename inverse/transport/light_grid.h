@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/core/error.h"
 #include "renderer/core/control.h"
+#include "renderer/core/error.h"
 #include "renderer/core/sampler.h"
 #include "renderer/trace/ray_tracer.h"
 

@@ -148,9 +148,10 @@ void EmissiveTriangles::add_instance(std::uint32_t index, bool instanced, std::v
     }
     // In double: a lamp may be so small that floats have no square of its area, and shine all the same.
     const Vec3d n = cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
-    const auto area = float(0.5 * length(n));
+    const double twice_area = length(n);
+    const auto area = float(0.5 * twice_area);
     if (!(area > 0)) continue;
-    b.axis = Vec3f(n / length(n));
+    b.axis = Vec3f(n / twice_area);
     b.spread = 0;
     b.two_sided = true;
     b.intensity = area * mean_emission(scene_, mesh, t);
